@@ -1,0 +1,357 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+# The whole pipeline of one case, in its order: particles and gas, cells, chains, comparison, figures.
+#   snakemake --cores 2                        the case `short`
+#   snakemake --cores 2 --config case=paper    another case of cases/
+# A rule gets only the keys of the case that it needs: what a changed key does not touch does not run again.
+import sys
+
+sys.path.insert(0, f"{workflow.basedir}/scripts")
+
+from bedchain.parameters import weight_per_area
+from bedchain.workflow import case_or_exit, modules, pick, solver_values, source_files, table_values
+
+NAME = config.get("case", "short")
+CASE = case_or_exit(NAME)
+RESULTS = f"results/{NAME}"
+FIGURES = f"results/{NAME}/figures"
+LOGS = f"logs/{NAME}"
+BENCHMARKS = f"benchmarks/{NAME}"
+MODELS = CASE["chain"]["models"]
+FORMS = {form: f".{form}" for form in ["png", "pdf", "csv"]}
+TRAJECTORY = {"trajectory": f"{RESULTS}/trajectory.npy", "metadata": f"{RESULTS}/trajectory.json"}
+MODEL_FIGURES = {"static": "fig3_static", "dynamic": "fig4_dynamic"}
+PLOTS = [
+    "fig1_cells",
+    "fig2_cost",
+    *map(MODEL_FIGURES.get, MODELS),
+    "fig5a_radial",
+    "fig5b_axial",
+    "snapshot",
+]
+
+
+rule all:
+    input:
+        expand(f"{FIGURES}/{{name}}{{form}}", name=PLOTS, form=FORMS.values()),
+        expand(
+            f"{RESULTS}/{{name}}",
+            name=["mixing.csv", "metrics.csv", "timing.csv", "table1.csv", "provenance.json"],
+        ),
+
+
+rule build_solver:
+    input:
+        script="openfoam_case/solver/build.sh",
+        sources=source_files("openfoam_case/solver", "*.C", "*.H", "files", "options"),
+    output:
+        solver="results/bin/bedFoam",
+    log:
+        "logs/build_solver.log",
+    conda:
+        "envs/python.yaml"
+    threads: 2
+    shell:
+        "sh {input.script} {output.solver} 2>&1 | tee {log} >&2"
+
+
+# The case file's own time does not count: only a key that the solvers need makes the particles run again.
+rule write_parameters:
+    input:
+        case=ancient(f"cases/{NAME}/case.yaml"),
+    output:
+        liggghts=f"{RESULTS}/parameters.lig",
+        openfoam=f"{RESULTS}/caseParameters",
+    log:
+        f"{LOGS}/write_parameters.log",
+    conda:
+        "envs/python.yaml"
+    params:
+        **solver_values(CASE),
+        folder=subpath(output.liggghts, parent=True),
+    shell:
+        "python scripts/write_parameters.py {input.case} {params.folder} 2>&1 | tee {log} >&2"
+
+
+# Hours for a large bed, so no edit of a script reruns it. Its state, dem/, is no declared output:
+# snakemake deletes the outputs of a job that failed, and the segments must outlive that.
+rule run_dem:
+    input:
+        rules.write_parameters.output,
+        solver=rules.build_solver.output.solver,
+        decks=source_files("liggghts_inputs", "in.*", "*.in"),
+        gas=source_files("openfoam_case", "0.orig/*", "constant/*", "system/*"),
+    output:
+        dem=f"{RESULTS}/dem.json",
+        bed_series=f"{RESULTS}/bed_series.csv",
+    log:
+        f"{LOGS}/run_dem.log",
+    benchmark:
+        f"{BENCHMARKS}/run_dem.tsv"
+    conda:
+        "envs/python.yaml"
+    threads: CASE["run"]["ranks"]
+    params:
+        **pick(CASE, "time.end_s", "time.segment_s"),
+        folder=subpath(output.dem, parent=True),
+    shell:
+        "python scripts/run_dem.py {params.folder} --end {params.end_s} --segment {params.segment_s}"
+        " --ranks {threads} 2>&1 | tee {log} >&2"
+
+
+rule parse_dumps:
+    input:
+        modules("stage", "trajectory"),
+        dem=rules.run_dem.output.dem,
+    output:
+        **TRAJECTORY,
+    log:
+        f"{LOGS}/parse_dumps.log",
+    benchmark:
+        f"{BENCHMARKS}/parse_dumps.tsv"
+    conda:
+        "envs/python.yaml"
+    params:
+        **pick(CASE, "bed.width_m", "bed.height_m"),
+    script:
+        "scripts/parse_dumps.py"
+
+
+rule assign_cells:
+    input:
+        modules("cell_store", "grid", "stage", "trajectory"),
+        **TRAJECTORY,
+    output:
+        cells=f"{RESULTS}/cells.npz",
+    log:
+        f"{LOGS}/assign_cells.log",
+    benchmark:
+        f"{BENCHMARKS}/assign_cells.tsv"
+    conda:
+        "envs/python.yaml"
+    params:
+        **pick(CASE, "cells", "particles.diameter_m"),
+    script:
+        "scripts/assign_cells.py"
+
+
+rule build_transitions:
+    input:
+        modules("cell_store", "frames", "models", "stage"),
+        **TRAJECTORY,
+        cells=rules.assign_cells.output.cells,
+    output:
+        transitions=f"{RESULTS}/transitions_{{model}}.npz",
+    log:
+        f"{LOGS}/build_transitions_{{model}}.log",
+    benchmark:
+        f"{BENCHMARKS}/build_transitions_{{model}}.tsv"
+    conda:
+        "envs/python.yaml"
+    params:
+        **pick(CASE, "learning", "chain.lag_s", "chain.estimator"),
+    script:
+        "scripts/build_transitions.py"
+
+
+rule run_chain:
+    input:
+        modules("cell_store", "distribution", "errors", "frames", "mixing", "models", "stage", "storage"),
+        **TRAJECTORY,
+        cells=rules.assign_cells.output.cells,
+        transitions=rules.build_transitions.output.transitions,
+    output:
+        chain=f"{RESULTS}/chain_{{model}}.npz",
+    log:
+        f"{LOGS}/run_chain_{{model}}.log",
+    benchmark:
+        f"{BENCHMARKS}/run_chain_{{model}}.tsv"
+    conda:
+        "envs/python.yaml"
+    params:
+        **pick(CASE, "comparison", "mixing", "chain.seed"),
+        **pick(CASE, "figures.batch_height_m", "figures.moments_s"),
+    script:
+        "scripts/run_chain.py"
+
+
+rule compare_mixing:
+    input:
+        modules("cell_store", "comparison", "distribution", "errors", "frames", "mixing", "stage", "storage"),
+        **TRAJECTORY,
+        cells=rules.assign_cells.output.cells,
+        chains=expand(rules.run_chain.output.chain, model=MODELS),
+        bed_series=rules.run_dem.output.bed_series,
+    output:
+        mixing=f"{RESULTS}/mixing.csv",
+        metrics=f"{RESULTS}/metrics.csv",
+    log:
+        f"{LOGS}/compare_mixing.log",
+    benchmark:
+        f"{BENCHMARKS}/compare_mixing.tsv"
+    conda:
+        "envs/python.yaml"
+    params:
+        **pick(CASE, "comparison", "mixing", "chain.models", "figures.batch_height_m"),
+        learn_start_s=CASE["learning"]["start_s"],
+        learn_end_s=CASE["learning"]["end_s"],
+        weight_Pa=weight_per_area(CASE),
+    script:
+        "scripts/compare_mixing.py"
+
+
+# Alone on the machine, since it measures times.
+rule time_models:
+    input:
+        modules(
+            "cell_store", "counting", "dynamic", "errors", "estimators", "frames", "grid", "models", "stage"
+        ),
+        modules("trajectory"),
+        **TRAJECTORY,
+        dem=rules.run_dem.output.dem,
+        cells=rules.assign_cells.output.cells,
+        transitions=expand(rules.build_transitions.output.transitions, model=MODELS),
+    output:
+        timing=f"{RESULTS}/timing.csv",
+    log:
+        f"{LOGS}/time_models.log",
+    conda:
+        "envs/python.yaml"
+    threads: workflow.cores or 1
+    params:
+        **pick(CASE, "chain"),
+        learning=CASE["learning"],
+        comparison=CASE["comparison"],
+    script:
+        "scripts/time_models.py"
+
+
+rule write_table:
+    input:
+        modules("case", "figures", "stage", "table"),
+        schema="cases/case.schema.yaml",
+    output:
+        table=f"{RESULTS}/table1.csv",
+        png=f"{FIGURES}/table1.png",
+        pdf=f"{FIGURES}/table1.pdf",
+    log:
+        f"{LOGS}/write_table.log",
+    conda:
+        "envs/python.yaml"
+    params:
+        **pick(CASE, "figures.resolution_dpi"),
+        values=table_values(CASE),
+    script:
+        "scripts/write_table.py"
+
+
+rule plot_cells:
+    input:
+        modules("cell_store", "figures", "grid", "stage", "trajectory"),
+        **TRAJECTORY,
+        cells=rules.assign_cells.output.cells,
+    output:
+        multiext(f"{FIGURES}/fig1_cells", **FORMS),
+    log:
+        f"{LOGS}/plot_cells.log",
+    conda:
+        "envs/python.yaml"
+    params:
+        **pick(CASE, "particles.diameter_m", "figures.resolution_dpi"),
+        time_s=CASE["comparison"]["start_s"],
+        colour=CASE["figures"]["cells_colour"],
+    script:
+        "scripts/plot_cells.py"
+
+
+rule plot_cost:
+    input:
+        modules("errors", "figures", "stage"),
+        timing=rules.time_models.output.timing,
+    output:
+        multiext(f"{FIGURES}/fig2_cost", **FORMS),
+    log:
+        f"{LOGS}/plot_cost.log",
+    conda:
+        "envs/python.yaml"
+    params:
+        **pick(CASE, "figures.resolution_dpi"),
+        window_s=CASE["comparison"]["end_s"] - CASE["comparison"]["start_s"],
+        colour=CASE["figures"]["cost_colour"],
+    script:
+        "scripts/plot_cost.py"
+
+
+rule plot_distribution:
+    input:
+        modules("cell_store", "distribution", "figures", "grid", "stage"),
+        cells=rules.assign_cells.output.cells,
+        chain=rules.run_chain.output.chain,
+    output:
+        multiext(f"{FIGURES}/{{figure,fig[34]}}_{{model,static|dynamic}}", **FORMS),
+    log:
+        f"{LOGS}/plot_distribution_{{figure}}_{{model}}.log",
+    conda:
+        "envs/python.yaml"
+    params:
+        **pick(CASE, "comparison.start_s", "figures.batch_height_m", "figures.resolution_dpi"),
+        model="{model}",
+        colour_map=CASE["figures"]["distribution_colour_map"],
+    script:
+        "scripts/plot_distribution.py"
+
+
+rule plot_mixing:
+    input:
+        modules("errors", "figures", "stage"),
+        mixing=rules.compare_mixing.output.mixing,
+        metrics=rules.compare_mixing.output.metrics,
+    output:
+        multiext(f"{FIGURES}/{{figure,fig5[ab]}}_{{direction,radial|axial}}", **FORMS),
+    log:
+        f"{LOGS}/plot_mixing_{{figure}}_{{direction}}.log",
+    conda:
+        "envs/python.yaml"
+    params:
+        **pick(CASE, "figures.resolution_dpi"),
+        direction="{direction}",
+        colours={source: CASE["figures"][f"{source}_colour"] for source in ["dem", *MODELS]},
+    script:
+        "scripts/plot_mixing.py"
+
+
+rule plot_snapshot:
+    input:
+        modules("cell_store", "figures", "gas_field", "stage", "trajectory"),
+        **TRAJECTORY,
+        dem=rules.run_dem.output.dem,
+    output:
+        multiext(f"{FIGURES}/snapshot", **FORMS),
+    log:
+        f"{LOGS}/plot_snapshot.log",
+    conda:
+        "envs/python.yaml"
+    params:
+        **pick(CASE, "particles.diameter_m", "figures.resolution_dpi"),
+        time_s=CASE["comparison"]["start_s"],
+        colour_map=CASE["figures"]["snapshot_colour_map"],
+    script:
+        "scripts/plot_snapshot.py"
+
+
+rule write_provenance:
+    input:
+        modules("case", "provenance", "stage"),
+        dem=rules.run_dem.output.dem,
+        metrics=rules.compare_mixing.output.metrics,
+        timing=rules.time_models.output.timing,
+    output:
+        provenance=f"{RESULTS}/provenance.json",
+    log:
+        f"{LOGS}/write_provenance.log",
+    conda:
+        "envs/python.yaml"
+    params:
+        case={section: value for section, value in CASE.items() if section != "figures"},
+        benchmarks=BENCHMARKS,
+    script:
+        "scripts/write_provenance.py"

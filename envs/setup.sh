@@ -1,0 +1,42 @@
+#!/bin/sh
+# SPDX-License-Identifier: GPL-3.0-or-later
+# Installs what is missing, and only that: Debian packages (system), .venv (Python packages), .openfoam (headers).
+# A folder is finished when its stamp names the state of its inputs; the stamp is written last.
+set -eu
+cd "$(dirname "$0")/.."
+. envs/common.sh
+PYTHON=/usr/bin/python3
+VENV_MB=2100 # Python packages, downloaded and unpacked [MB]
+TEMP_MB=500  # of that in the temporary folder
+
+# lock_entry NAME: the lock's lines on that package (version and hashes).
+lock_entry() { awk -v name="$1==" 'index($0, name) == 1, !/\\$/' envs/requirements.txt; }
+
+pip_install() { # the lock is complete: what it does not name is not looked for
+    logged .setup/pip.log 'pip install' .venv/bin/python -m pip install --quiet --no-input \
+        --disable-pip-version-check --no-deps --require-hashes "$@"
+}
+
+python_packages() {
+    "$PYTHON" -c 'import sys; sys.exit(sys.version_info < (3, 11))' ||
+        fail "$PYTHON is $("$PYTHON" -V): Python 3.11 or newer is needed (Debian 12 has it)"
+    need_space . "$VENV_MB" 'Python packages'
+    need_space "${TMPDIR:-/tmp}" "$TEMP_MB" "pip's downloads"
+    rm -rf .venv
+    "$PYTHON" -m venv .venv
+    lock_entry setuptools >.setup/build_tools.txt # for the one package that comes as source only
+    pip_install -r .setup/build_tools.txt
+    pip_install --no-build-isolation --use-pep517 -r envs/requirements.txt
+}
+
+mkdir -p .setup
+exec 9>.setup/lock
+flock -n 9 || { say 'waiting for another set-up to finish' && flock 9; }
+
+# shellcheck disable=SC2046 # one word a package
+sh envs/debian_packages.sh .setup/apt.log $(sed 's/#.*//' envs/apt.txt)
+step .venv "$(digest envs/requirements.txt) $("$PYTHON" -V) $(pwd -P)" \
+    'installing Python packages into .venv (about 1 GB, a minute or two)' python_packages
+step .openfoam "$(digest envs/openfoam_headers.sh) $(dpkg-query -W -f '${Version}' libopenfoam)" \
+    "fetching OpenFOAM's headers into .openfoam (45 MB to download)" \
+    sh envs/openfoam_headers.sh .setup/openfoam .openfoam

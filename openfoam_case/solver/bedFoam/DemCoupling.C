@@ -1,0 +1,273 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+
+#include "DemCoupling.H"
+
+namespace
+{
+
+// Closest discs fill 0.6046 of a slab one diameter thick and spheres 0.74 of space: a lower voidage is no bed
+constexpr double smallestVoidage = 0.2;
+
+bedFoam::DragLaw namedDragLaw(const dictionary& gas)
+{
+    const std::string name = gas.get<word>("drag");
+    const bedFoam::DragLaw law = bedFoam::dragLaw(name);
+    if (!law)
+    {
+        FatalIOErrorInFunction(gas) << "drag law " << name << " does not exist; there are";
+        for (const std::string& known : bedFoam::dragLawNames()) FatalIOError << ' ' << known;
+        FatalIOError << exit(FatalIOError);
+    }
+    return law;
+}
+
+//- The deck's variables, as the segment gives them
+std::vector<std::pair<std::string, std::string>> deckVariables(const dictionary& segment)
+{
+    std::vector<std::pair<std::string, std::string>> variables;
+    for (const char* name : {"parameters", "restart", "output", "decks"})
+    {
+        variables.emplace_back(name, segment.get<fileName>(name));
+    }
+    variables.emplace_back("steps", "0");
+    variables.emplace_back("start_step", std::to_string(segment.get<label>("start_step")));
+    return variables;
+}
+
+}
+
+bedFoam::DemCoupling::DemCoupling
+(
+    const fvMesh& mesh, const dictionary& parameters, const dictionary& gas, const dictionary& segment
+)
+:
+    mesh_(mesh),
+    gasDensity_(gas.get<scalar>("density")),
+    gasViscosity_(gas.get<scalar>("viscosity")),
+    diameter_(parameters.get<scalar>("diameter")),
+    mass_(parameters.get<scalar>("density")*constant::mathematical::pi/6*pow3(diameter_)),
+    volume_(constant::mathematical::pi/6*pow3(diameter_)),
+    gravity_(parameters.get<scalar>("gravity")),
+    interval_(mesh.time().deltaTValue()),
+    steps_(parameters.get<label>("coupling_steps")),
+    dragLaw_(namedDragLaw(gas)),
+    dem_(segment.get<fileName>("deck"), deckVariables(segment)),
+    grid_(slab(parameters))
+{
+    grid_.setSmoothingLength(parameters.get<scalar>("smoothing_diameters")*diameter_);
+    checkSlabs();
+    const Time& time = mesh.time();
+    dem_.start(steps_*std::lround((time.endTime() - time).value()/interval_));
+}
+
+bedFoam::SlabGrid bedFoam::DemCoupling::slab(const dictionary& parameters) const
+{
+    const int ranks = Pstream::nProcs();
+    const std::array<int, 3> cells
+    {
+        static_cast<int>(parameters.get<label>("gas_cells_x")),
+        static_cast<int>(parameters.get<label>("gas_cells_y")),
+        static_cast<int>(parameters.get<label>("gas_cells_z"))
+    };
+    if (cells[0] % ranks)
+    {
+        FatalErrorInFunction
+            << cells[0] << " gas cells along x cannot be cut into " << ranks << " equal slabs:"
+            << " choose gas.cell_size_m or run.ranks so that they can" << exit(FatalError);
+    }
+    const double low = parameters.get<scalar>("slab_low");
+    const std::array<double, 3> size
+    {
+        parameters.get<scalar>("width")/cells[0],
+        (parameters.get<scalar>("slab_high") - low)/cells[1],
+        parameters.get<scalar>("height")/cells[2]
+    };
+    const int own = cells[0]/ranks;
+    return SlabGrid
+    (
+        {own, cells[1], cells[2]}, {Pstream::myProcNo()*own*size[0], low, 0}, size, Pstream::myProcNo(), ranks
+    );
+}
+
+void bedFoam::DemCoupling::checkSlabs() const
+{
+    const double tolerance = 1e-6*diameter_;
+    const bool sameCells = mesh_.nCells() == grid_.size()
+        && [&]()
+        {
+            for (label cell = 0; cell < mesh_.nCells(); ++cell)
+            {
+                const auto centre = grid_.centre(cell);
+                if (mag(mesh_.C()[cell] - vector(centre[0], centre[1], centre[2])) > tolerance) return false;
+            }
+            return true;
+        }();
+    const boundBox box(mesh_.points(), false);
+    const bool sameSlab = mag(box.min().x() - dem_.slab().first) < tolerance
+        && mag(box.max().x() - dem_.slab().second) < tolerance;
+    if (!returnReduce(sameCells && sameSlab, andOp<bool>()))
+    {
+        FatalErrorInFunction
+            << "gas mesh and particle domain are not cut into the same slabs: the mesh must be the block of"
+            << " system/blockMeshDict, cut by system/decomposeParDict" << exit(FatalError);
+    }
+}
+
+void bedFoam::DemCoupling::advance()
+{
+    dem_.advance(steps_);
+}
+
+void bedFoam::DemCoupling::toGrid(const volScalarField& from, SlabField& to, int component) const
+{
+    forAll(from, cell) to.values[static_cast<size_t>(grid_.place(cell))*to.components + component] = from[cell];
+}
+
+void bedFoam::DemCoupling::toGrid(const volVectorField& from, SlabField& to, int component) const
+{
+    forAll(from, cell)
+    {
+        double* target = &to.values[static_cast<size_t>(grid_.place(cell))*to.components + component];
+        for (direction d = 0; d < 3; ++d) target[d] = from[cell][d];
+    }
+}
+
+void bedFoam::DemCoupling::depositVolume(volScalarField& voidage)
+{
+    particles_.resize(dem_.count());
+    SlabField solids = grid_.field(1);
+    for (size_t i = 0; i < particles_.size(); ++i)
+    {
+        particles_[i].stencil = grid_.locate(dem_.position()[i]);
+        grid_.deposit(solids, particles_[i].stencil, &volume_);
+    }
+    grid_.completeDeposit(solids);
+
+    clipped_ = 0;
+    scalarField& values = voidage.primitiveFieldRef();
+    forAll(values, cell)
+    {
+        const double value = 1 - solids.values[grid_.place(cell)]/grid_.cellVolume();
+        if (value < smallestVoidage) ++clipped_;
+        values[cell] = max(value, smallestVoidage);
+    }
+    reduce(clipped_, sumOp<label>());
+    voidage.correctBoundaryConditions();
+}
+
+void bedFoam::DemCoupling::depositDrag
+(
+    const volVectorField& U, const volScalarField& voidage, volScalarField& dragRate, volVectorField& dragSource
+)
+{
+    SlabField gas = grid_.field(4);
+    toGrid(U, gas, 0);
+    toGrid(voidage, gas, 3);
+    grid_.prepareSample(gas);
+
+    double** velocity = dem_.velocity();
+    double** dragged = dem_.draggedVelocity();
+    SlabField drag = grid_.field(4);
+    for (size_t i = 0; i < particles_.size(); ++i)
+    {
+        Exchange& particle = particles_[i];
+        double around[4];
+        grid_.sample(gas, particle.stencil, around);
+        const double slip = std::sqrt
+        (
+            sqr(around[0] - velocity[i][0]) + sqr(around[1] - velocity[i][1]) + sqr(around[2] - velocity[i][2])
+        );
+        const double explicitDrag = dragLaw_({around[3], diameter_, slip, gasDensity_, gasViscosity_});
+        particle.drag = explicitDrag/(1 + interval_*explicitDrag/mass_);
+
+        double given[4] = {particle.drag, 0, 0, 0};
+        for (int d = 0; d < 3; ++d)
+        {
+            particle.undragged[d] = 2*velocity[i][d] - dragged[i][d];
+            given[d + 1] = particle.drag*particle.undragged[d];
+        }
+        grid_.deposit(drag, particle.stencil, given);
+    }
+    grid_.completeDeposit(drag);
+
+    const double perVolume = 1/(gasDensity_*grid_.cellVolume());
+    forAll(dragRate, cell)
+    {
+        const double* value = &drag.values[static_cast<size_t>(grid_.place(cell))*4];
+        dragRate[cell] = perVolume*value[0];
+        dragSource[cell] = perVolume*vector(value[1], value[2], value[3]);
+    }
+}
+
+void bedFoam::DemCoupling::deposit
+(
+    const volVectorField& U, volScalarField& voidage, volScalarField& dragRate, volVectorField& dragSource
+)
+{
+    depositVolume(voidage);
+    depositDrag(U, voidage, dragRate, dragSource);
+}
+
+void bedFoam::DemCoupling::applyForces
+(
+    const volVectorField& U, const volVectorField& gradP,
+    const volScalarField& dragRate, const volVectorField& dragSource
+)
+{
+    SlabField gas = grid_.field(6);
+    toGrid(U, gas, 0);
+    toGrid(gradP, gas, 3);
+    grid_.prepareSample(gas);
+
+    double** velocity = dem_.velocity();
+    double** force = dem_.force();
+    double** dragged = dem_.draggedVelocity();
+    vector dragOnParticles = Zero;
+    scalar dragSize = 0;
+    for (size_t i = 0; i < particles_.size(); ++i)
+    {
+        const Exchange& particle = particles_[i];
+        double around[6];
+        grid_.sample(gas, particle.stencil, around);
+        for (int d = 0; d < 3; ++d)
+        {
+            // Across a single layer even a force of round-off would make the bed buckle
+            const double drag = mesh_.solutionD()[d] > 0 ? particle.drag*(around[d] - particle.undragged[d]) : 0;
+            const double buoyancy = d == 2 ? volume_*gasDensity_*gravity_ : 0;
+            const double pressure = mesh_.solutionD()[d] > 0 ? -volume_*gasDensity_*around[d + 3] : 0;
+            force[i][d] = drag + pressure + buoyancy;
+            dragged[i][d] = velocity[i][d] + interval_*drag/mass_;
+            dragOnParticles[d] += drag;
+            dragSize += std::abs(drag);
+        }
+    }
+    const vector dragOnGas = gasDensity_*grid_.cellVolume()*
+        sum(dragSource.primitiveField() - dragRate.primitiveField()*U.primitiveField());
+    exchangeError_ = mag(returnReduce(dragOnParticles + dragOnGas, sumOp<vector>()))
+        /max(returnReduce(dragSize, sumOp<scalar>()), VSMALL);
+}
+
+void bedFoam::DemCoupling::writeRestart(const fileName& path)
+{
+    dem_.command("write_restart " + path);
+}
+
+bedFoam::DemCoupling::Bed bedFoam::DemCoupling::bed() const
+{
+    scalar height = 0, energy = 0, number = dem_.count();
+    for (int i = 0; i < dem_.count(); ++i)
+    {
+        const double* v = dem_.velocity()[i];
+        height += dem_.position()[i][2];
+        energy += 0.5*mass_*(sqr(v[0]) + sqr(v[1]) + sqr(v[2]));
+    }
+    reduce(height, sumOp<scalar>());
+    reduce(energy, sumOp<scalar>());
+    reduce(number, sumOp<scalar>());
+    return {height/max(number, 1.0), energy, number};
+}
+
+double bedFoam::DemCoupling::weightPerArea(double area) const
+{
+    return returnReduce(scalar(dem_.count()), sumOp<scalar>())*(mass_ - gasDensity_*volume_)*gravity_/area;
+}

@@ -1,0 +1,95 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+
+#include "Liggghts.H"
+
+#include "atom.h"
+#include "domain.h"
+#include "fix_property_atom.h"
+#include "input.h"
+#include "integrate.h"
+#include "lammps.h"
+#include "modify.h"
+#include "timer.h"
+#include "update.h"
+
+bedFoam::Liggghts::Liggghts
+(
+    const std::string& deck, const std::vector<std::pair<std::string, std::string>>& variables
+)
+{
+    std::vector<std::string> words{"bedFoam", "-log", "none"};
+    for (const auto& variable : variables)
+    {
+        words.insert(words.end(), {"-var", variable.first, variable.second});
+    }
+    std::vector<char*> arguments;
+    for (std::string& text : words) arguments.push_back(&text[0]);
+
+    dem_.reset(new LAMMPS_NS::LAMMPS(static_cast<int>(arguments.size()), arguments.data(), MPI_COMM_WORLD));
+    dem_->input->file(deck.c_str());
+
+    const auto property = [this](const char* name)
+    {
+        return static_cast<LAMMPS_NS::FixPropertyAtom*>
+        (
+            dem_->modify->find_fix_property(name, "property/atom", "vector", 0, 0, "bedFoam")
+        );
+    };
+    force_ = property("dragforce");
+    dragged_ = property("draggedVelocity");
+}
+
+bedFoam::Liggghts::~Liggghts() = default;
+
+void bedFoam::Liggghts::start(long steps)
+{
+    LAMMPS_NS::Update& update = *dem_->update;
+    update.whichflag = 1;
+    update.nsteps = static_cast<int>(steps);
+    update.firststep = update.beginstep = update.ntimestep;
+    update.laststep = update.endstep = update.firststep + steps;
+    dem_->init();
+    update.integrate->setup();
+    dem_->timer->init();
+    dem_->timer->barrier_start(TIME_LOOP);
+}
+
+void bedFoam::Liggghts::advance(int steps)
+{
+    dem_->update->integrate->run(steps);
+}
+
+void bedFoam::Liggghts::command(const std::string& line)
+{
+    dem_->input->one(line.c_str());
+}
+
+int bedFoam::Liggghts::count() const
+{
+    return dem_->atom->nlocal;
+}
+
+double** bedFoam::Liggghts::position() const
+{
+    return dem_->atom->x;
+}
+
+double** bedFoam::Liggghts::velocity() const
+{
+    return dem_->atom->v;
+}
+
+double** bedFoam::Liggghts::force() const
+{
+    return force_->array_atom;
+}
+
+double** bedFoam::Liggghts::draggedVelocity() const
+{
+    return dragged_->array_atom;
+}
+
+std::pair<double, double> bedFoam::Liggghts::slab() const
+{
+    return {dem_->domain->sublo[0], dem_->domain->subhi[0]};
+}

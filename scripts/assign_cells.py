@@ -1,0 +1,52 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""The cell of every particle in every frame: results/<case>/cells.npz."""
+
+from pathlib import Path
+
+import numpy as np
+
+from bedchain.cell_store import write_cells
+from bedchain.grid import Grid
+from bedchain.stage import LOG, stage
+from bedchain.trajectory import open_trajectory
+
+
+def assign_cells(
+    trajectory: Path, metadata: Path, cells: Path, columns: int, rows: int, diameter_m: float
+) -> None:
+    """Lay a grid over the bed and note where every particle is.
+
+    Parameters
+    ----------
+    trajectory, metadata : Path
+        ``trajectory.npy`` and ``trajectory.json``.
+    cells : Path
+        Gets int32 (n_frames, n_particles), with times and the grid.
+    columns, rows : int
+        Cells along the width and the height [1].
+    diameter_m : float
+        Particle diameter, the finest length that the data resolve [m].
+
+    Raises
+    ------
+    DataError
+        A position outside the bed, or cells smaller than a particle.
+    """
+    values, described = open_trajectory(trajectory, metadata)
+    grid = Grid(described["width_m"], described["height_m"], columns, rows)
+    grid.check_resolution(diameter_m)
+    write_cells(values, np.array(described["times_s"]), grid, cells)
+    size = f"{1000 * grid.cell_width_m:g} mm x {1000 * grid.cell_height_m:g} mm"
+    LOG.info("%d cells of %s, %d frames, in %s", grid.n_cells, size, len(values), cells)
+
+
+if "snakemake" in globals():
+    with stage(snakemake.log[0]):
+        assign_cells(
+            Path(snakemake.input.trajectory),
+            Path(snakemake.input.metadata),
+            Path(snakemake.output.cells),
+            snakemake.params.columns,
+            snakemake.params.rows,
+            snakemake.params.diameter_m,
+        )

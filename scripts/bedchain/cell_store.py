@@ -1,0 +1,172 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""The cells of all particles in all frames on disk: written and read a chunk of frames at a time."""
+
+import tempfile
+import zipfile
+from pathlib import Path
+from typing import NamedTuple
+
+import numpy as np
+
+from bedchain.errors import UserError
+from bedchain.frames import DataError, Frames, window
+from bedchain.grid import Grid
+from bedchain.stage import complete
+from bedchain.storage import map_array
+from bedchain.trajectory import open_trajectory
+
+# about 30 MB of positions at a time
+CHUNK_VALUES = 4_000_000
+# frames, in lags, that lead up to a start: more than any model's states look back
+HISTORY_LAGS = 4
+
+
+class CellStore(NamedTuple):
+    """Cells of all particles in all frames.
+
+    Attributes
+    ----------
+    cells : (n_frames, n_particles) ndarray of int32
+        Memory map: only what is used is read.
+    times_s : (n_frames,) ndarray
+        Times of the frames [s].
+    grid : Grid
+    """
+
+    cells: np.ndarray
+    times_s: np.ndarray
+    grid: Grid
+
+
+def write_cells(trajectory: np.ndarray, times_s: np.ndarray, grid: Grid, target: Path) -> None:
+    """Assign every particle of every frame to its cell, a chunk of frames at a time.
+
+    Parameters
+    ----------
+    trajectory : (n_frames, 4, n_particles) ndarray
+        Rows x, z [m], ...
+    times_s : (n_frames,) ndarray
+        Times of the frames [s].
+    grid : Grid
+    target : Path
+        ``cells.npz``: cells, times_s, columns, rows, width_m, height_m.
+    """
+    n_frames, _, n_particles = trajectory.shape
+    chunk = max(1, CHUNK_VALUES // n_particles)
+    with complete(target) as temporary, tempfile.TemporaryFile(dir=target.parent) as scratch:
+        store = np.memmap(scratch, np.int32, "w+", shape=(n_frames, n_particles))
+        for first in range(0, n_frames, chunk):
+            part = trajectory[first : first + chunk]
+            store[first : first + chunk] = grid.cell_of(part[:, 0], part[:, 1], first)
+        sizes = {
+            "columns": grid.columns,
+            "rows": grid.rows,
+            "width_m": grid.width_m,
+            "height_m": grid.height_m,
+        }
+        np.savez(temporary, cells=store, times_s=times_s, **sizes)  # type: ignore[arg-type]
+
+
+def open_cells(path: Path) -> CellStore:
+    """Cells written by :func:`write_cells`, as a memory map.
+
+    Parameters
+    ----------
+    path : Path
+        ``cells.npz``.
+
+    Returns
+    -------
+    CellStore
+
+    Raises
+    ------
+    UserError
+        The file is not what assign_cells writes.
+    """
+    try:
+        with np.load(path) as small:
+            times_s = small["times_s"]
+            grid = Grid(
+                float(small["width_m"]), float(small["height_m"]), int(small["columns"]), int(small["rows"])
+            )
+        cells = map_array(path, "cells")
+    except (OSError, DataError, ValueError, KeyError, zipfile.BadZipFile) as error:
+        raise UserError(f"{path}: not readable as cells ({error}); delete it and run again") from error
+    return CellStore(cells, times_s, grid)
+
+
+def window_frames(trajectory: Path, metadata: Path, store: CellStore, start_s: float, end_s: float) -> Frames:
+    """Frames of a window, positions and cells, as memory maps.
+
+    Parameters
+    ----------
+    trajectory, metadata : Path
+        ``trajectory.npy`` and ``trajectory.json``.
+    store : CellStore
+    start_s, end_s : float
+        The window, both ends included [s].
+
+    Returns
+    -------
+    Frames
+    """
+    return _all_frames(trajectory, metadata, store).part(window(store.times_s, start_s, end_s))
+
+
+def frames_up_to(trajectory: Path, metadata: Path, store: CellStore, start_s: float, lag: int) -> Frames:
+    """The frame of a start, and before it those that a chain may need to know where the particles come from.
+
+    Parameters
+    ----------
+    trajectory, metadata : Path
+        ``trajectory.npy`` and ``trajectory.json``.
+    store : CellStore
+    start_s : float
+        Time of the last frame given [s].
+    lag : int
+        Frames in a step of the chain.
+
+    Returns
+    -------
+    Frames
+    """
+    start = frame_at(store.times_s, start_s)
+    first = max(0, start - HISTORY_LAGS * lag)
+    return _all_frames(trajectory, metadata, store).part(slice(first, start + 1))
+
+
+def _all_frames(trajectory: Path, metadata: Path, store: CellStore) -> Frames:
+    values, _ = open_trajectory(trajectory, metadata)
+    if values.shape[::2] != store.cells.shape:
+        raise UserError(
+            f"{trajectory} and the cells differ in frames or particles: delete cells.npz, run again"
+        )
+    x, z, vx, vz = (values[:, row] for row in range(4))
+    return Frames(store.times_s, x, z, store.cells, vx, vz)
+
+
+def frame_at(times_s: np.ndarray, time_s: float) -> int:
+    """Number of the frame nearest to a time.
+
+    Parameters
+    ----------
+    times_s : (n_frames,) ndarray
+        Times of the frames [s].
+    time_s : float
+        Wanted time [s].
+
+    Returns
+    -------
+    int
+
+    Raises
+    ------
+    UserError
+        No frame within half an interval.
+    """
+    index = int(np.argmin(np.abs(times_s - time_s)))
+    interval = (times_s[-1] - times_s[0]) / max(len(times_s) - 1, 1)
+    if abs(times_s[index] - time_s) > 0.5 * interval:
+        raise UserError(f"no frame at {time_s:g} s: frames go from {times_s[0]:g} s to {times_s[-1]:g} s")
+    return index

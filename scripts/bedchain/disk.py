@@ -1,0 +1,61 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Disk space that a simulation takes, asked for before it starts."""
+
+import shutil
+from pathlib import Path
+
+from bedchain.case import Case
+from bedchain.case_checks import ratio
+from bedchain.errors import UserError
+
+DUMP_COLUMNS = 5  # id x z vx vz
+DOUBLE_BYTES = 8
+TRAJECTORY_BYTES = 4 * 4  # x z vx vz in single precision, the store made of the frames
+CELL_BYTES = 4  # an int32 for each particle and frame
+RESTART_BYTES_PARTICLE = 1500  # a LIGGGHTS restart, with the history of a particle's contacts
+RESTART_BYTES_GAS_CELL = 300  # text of the gas fields
+RESTARTS_KEPT = 3  # the last ones, and the one being written
+MARGIN = 1.1  # file system blocks, logs, figures
+
+
+def run_bytes(case: Case) -> int:
+    """Bytes that a case takes on disk: frames, the stores made of them, and restarts, with a margin.
+
+    Parameters
+    ----------
+    case : dict
+        A checked case, of `bedchain.case.load_case`.
+    """
+    time, bed = case["time"], case["bed"]
+    frames = int(ratio(time["end_s"], time["frame_interval_s"])) + 1
+    number = case["particles"]["number"]
+    gas_cells = bed["width_m"] * bed["height_m"] / case["gas"]["cell_size_m"] ** 2
+    frame_bytes = number * (DUMP_COLUMNS * DOUBLE_BYTES + TRAJECTORY_BYTES + CELL_BYTES)
+    restart_bytes = number * RESTART_BYTES_PARTICLE + gas_cells * RESTART_BYTES_GAS_CELL
+    return int(MARGIN * (frames * frame_bytes + RESTARTS_KEPT * restart_bytes))
+
+
+def require_disk(folder: Path, needed: int, done: int = 0) -> None:
+    """Refuse to start where the disk is too full.
+
+    Parameters
+    ----------
+    folder : Path
+        Where the results go; an existing folder.
+    needed : int
+        Bytes that the run takes in all.
+    done : int, optional
+        Bytes of it that are there already.
+
+    Raises
+    ------
+    UserError
+        Names the folder, the space needed and free, and the remedy.
+    """
+    free = shutil.disk_usage(folder).free
+    if needed - done > free:
+        raise UserError(
+            f"{folder}: the run needs {(needed - done) / 1e6:.0f} MB on disk, {free / 1e6:.0f} MB are free; "
+            "free some space, let results/ point to a larger disk, "
+            "or in the case take a shorter time.end_s or a longer time.frame_interval_s"
+        )

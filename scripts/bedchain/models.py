@@ -1,0 +1,154 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""One interface for every chain: learned from frames, it gives mixing curves, densities and particle paths.
+
+A model is a name in `LEARNERS` and `READERS`. Those that are Markov on some set of states (cells, pairs of
+cells, cells by velocity class) are a `MarkovChain`, which does the rest from its matrix; any other class
+with the methods of `Chain` will do as well. Scripts loop over names and know no model in particular.
+"""
+
+from collections.abc import Callable, Iterator, Sequence
+from pathlib import Path
+from typing import Any, Protocol
+
+import numpy as np
+from numpy.typing import NDArray
+
+from bedchain import dynamic, static
+from bedchain.frames import DataError, Frames
+from bedchain.grid import Grid
+from bedchain.markov_chain import MarkovChain
+from bedchain.storage import read_arrays, write_arrays
+
+
+class Chain(Protocol):
+    """What every model offers once it is learned.
+
+    Attributes
+    ----------
+    name : str
+        Name of the model.
+    grid : Grid
+        Cells in which densities and paths are given.
+    lag_s : float
+        Time between two steps [s].
+    report : dict of str to float
+        What learning found, by ``<quantity>_<unit>``, for metrics.csv.
+    """
+
+    @property
+    def name(self) -> str: ...
+    @property
+    def grid(self) -> Grid: ...
+    @property
+    def lag_s(self) -> float: ...
+    @property
+    def report(self) -> dict[str, float]: ...
+
+    def mixing(
+        self,
+        start: Frames,
+        split_x_m: float,
+        split_z_m: float,
+        steps: int,
+        rng: np.random.Generator | None = None,
+    ) -> NDArray[np.float64]:
+        """Share of each group of `mixing.GROUPS`, marked in the last frame of ``start``, still on its side.
+
+        Expected values, or with an ``rng`` one Monte Carlo of every particle; (steps + 1, 4), 1 at step 0.
+        """
+        ...
+
+    def densities(
+        self,
+        start: Frames,
+        marked: NDArray[np.bool_],
+        steps: Sequence[int],
+        rng: np.random.Generator | None = None,
+    ) -> NDArray[np.float64] | NDArray[np.int64]:
+        """Particles of each marked group in each cell at rising steps, (n_steps, n_groups, n_cells).
+
+        Expected numbers, or with an ``rng`` the int64 counts of one Monte Carlo of every particle.
+        """
+        ...
+
+    def paths(self, start: Frames, steps: int, rng: np.random.Generator) -> Iterator[NDArray[np.int32]]:
+        """Cell of every particle at steps 0 to ``steps``, one after the other."""
+        ...
+
+    def long_run_density(self, start: Frames) -> NDArray[np.float64]:
+        """Share of the particles in each cell in the long run, (n_cells,), sum 1."""
+        ...
+
+    def arrays(self) -> dict[str, NDArray[Any]]:
+        """All that `load` needs, in plain arrays."""
+        ...
+
+
+# Each learns from frames and takes the keyword arguments that `learn` passes on.
+LEARNERS: dict[str, Callable[..., Chain]] = {"static": static.learn, "dynamic": dynamic.learn}
+READERS: dict[str, Callable[[dict[str, NDArray[Any]]], Chain]] = {
+    "static": MarkovChain.from_arrays,
+    "dynamic": MarkovChain.from_arrays,
+}
+
+
+def learn(
+    name: str,
+    frames: Frames,
+    grid: Grid,
+    lag: int = 1,
+    estimator: str = "pooled",
+    step_weights: NDArray[np.int64] | None = None,
+    **options: Any,
+) -> Chain:
+    """Learn a chain from a window of frames.
+
+    Parameters
+    ----------
+    name : str
+        One of `LEARNERS`.
+    frames : Frames
+        The learning window.
+    grid : Grid
+        The cells that ``frames.cells`` refers to.
+    lag : int
+        Frames in a step.
+    estimator : {"literal", "per_step", "pooled"}
+        How counts become probabilities.
+    step_weights : (n_frames - lag,) int array, optional
+        How many times the step starting at each frame counts (bootstrap).
+    **options
+        Settings of one model only.
+
+    Returns
+    -------
+    Chain
+
+    Raises
+    ------
+    DataError
+        The name is unknown, or the data cannot be used.
+    """
+    if name not in LEARNERS:
+        raise DataError(f"model {name!r} is unknown: choose from {', '.join(LEARNERS)}")
+    return LEARNERS[name](frames, grid, lag=lag, estimator=estimator, step_weights=step_weights, **options)
+
+
+def save(chain: Chain, path: Path | str) -> None:
+    """Write a chain so that `load` gives it back exactly; the file appears whole or not at all."""
+    write_arrays(path, {"name": np.array(chain.name), **chain.arrays()})
+
+
+def load(path: Path | str) -> Chain:
+    """Chain written by `save`.
+
+    Raises
+    ------
+    DataError
+        The file is not one of a known model.
+    """
+    arrays = read_arrays(path)
+    name = str(arrays.pop("name", ""))
+    if name not in READERS:
+        raise DataError(f"{path} holds no chain of a known model ({name!r}): build the transitions again")
+    return READERS[name](arrays | {"name": np.array(name)})

@@ -1,0 +1,114 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""The one path of numbers from a case to both solvers: a LIGGGHTS include and an OpenFOAM dictionary."""
+
+import math
+from dataclasses import dataclass
+
+from bedchain.case import Case, Schema, case_value, schema_keys
+from bedchain.case_checks import ratio
+
+GRAVITY_M_S2 = 9.81  # standard value, rounded; downwards along z
+SKIN_DIAMETERS = (
+    0.5  # neighbour skin: a list lasts until a particle has moved half of it; speed only, no physics
+)
+START_SPACING_DIAMETERS = 1.15  # of the loose lattice that the particles fall from: no contact at the start
+START_SPEED_M_S = 0.05  # random, breaks the lattice; forgotten after the fall
+DUMP_SUFFIX = {"binary": "bin", "text": "txt"}
+
+
+@dataclass(frozen=True)
+class Parameter:
+    """One number or word that a solver needs.
+
+    Attributes
+    ----------
+    name : str
+        Its name in decks and dictionaries.
+    value : int, float or str
+        In the unit.
+    unit : str
+        Unit.
+    source : str
+        Where it is from: a key of the case, or the rule that derives it.
+    """
+
+    name: str
+    value: int | float | str
+    unit: str
+    source: str
+
+
+def solver_parameters(case: Case, schema: Schema) -> list[Parameter]:
+    """Everything the solvers need to know of a case, and nothing else.
+
+    Parameters
+    ----------
+    case : dict
+        A checked case, of `bedchain.case.load_case`.
+    schema : dict
+        The schema; its ``x-variable`` marks the keys that the solvers need.
+
+    Returns
+    -------
+    list of Parameter
+        Keys in the order of the schema, then the derived ones.
+    """
+    given = [
+        Parameter(part["x-variable"], case_value(case, key), part["x-unit"], key)
+        for key, part in schema_keys(schema).items()
+        if "x-variable" in part
+    ]
+    return given + derived_parameters(case)
+
+
+def derived_parameters(case: Case) -> list[Parameter]:
+    """Numbers that follow from the keys, such as steps from times (whole in a checked case)."""
+    time, bed, particles = case["time"], case["bed"], case["particles"]
+    cell = case["gas"]["cell_size_m"]
+    diameter = particles["diameter_m"]
+    return [
+        Parameter("gravity", GRAVITY_M_S2, "m/s2", "constant, along -z"),
+        Parameter("radius", diameter / 2, "m", "particles.diameter_m / 2"),
+        Parameter("slab_low", -bed["thickness_m"] / 2, "m", "-bed.thickness_m / 2"),
+        Parameter("slab_high", bed["thickness_m"] / 2, "m", "bed.thickness_m / 2"),
+        Parameter("skin", SKIN_DIAMETERS * diameter, "m", f"{SKIN_DIAMETERS} diameters"),
+        Parameter(
+            "settle_spacing", START_SPACING_DIAMETERS * diameter, "m", f"{START_SPACING_DIAMETERS} diameters"
+        ),
+        Parameter("settle_speed", START_SPEED_M_S, "m/s", "constant, random start"),
+        Parameter("gas_cells_x", int(ratio(bed["width_m"], cell)), "1", "bed.width_m / gas.cell_size_m"),
+        Parameter("gas_cells_y", 1, "1", "one layer"),
+        Parameter("gas_cells_z", int(ratio(bed["height_m"], cell)), "1", "bed.height_m / gas.cell_size_m"),
+        _steps("coupling_steps", time, "gas_step_s"),
+        _steps("settle_steps", time, "settle_s"),
+        _steps("frame_steps", time, "frame_interval_s"),
+        Parameter("dump_suffix", DUMP_SUFFIX[case["run"]["dump_format"]], "name", "run.dump_format"),
+    ]
+
+
+def weight_per_area(case: Case) -> float:
+    """Weight of the particles over the bed's cross section [Pa]: the pressure drop of the fluidized bed."""
+    bed, particles = case["bed"], case["particles"]
+    volume = particles["number"] * math.pi / 6 * particles["diameter_m"] ** 3
+    return float(particles["density_kg_m3"] * volume * GRAVITY_M_S2 / (bed["width_m"] * bed["thickness_m"]))
+
+
+def _steps(name: str, time: dict[str, float], key: str) -> Parameter:
+    return Parameter(name, int(ratio(time[key], time["dem_step_s"])), "1", f"time.{key} / time.dem_step_s")
+
+
+def liggghts_text(parameters: list[Parameter]) -> str:
+    """The LIGGGHTS include: ``variable young equal 1900000.0  # [Pa] contact.young_modulus_Pa``."""
+    lines = ["# made by scripts/write_parameters.py; edit the case file instead"]
+    for parameter in parameters:
+        style = "string" if isinstance(parameter.value, str) else "equal"
+        comment = f"# [{parameter.unit}] {parameter.source}"
+        lines.append(f"variable {parameter.name} {style} {parameter.value}  {comment}")
+    return "\n".join(lines) + "\n"
+
+
+def openfoam_text(parameters: list[Parameter]) -> str:
+    """The OpenFOAM dictionary to ``#include``: ``young 1900000.0; // [Pa] contact.young_modulus_Pa``."""
+    lines = ["// made by scripts/write_parameters.py; edit the case file instead"]
+    lines += [f"{item.name} {item.value}; // [{item.unit}] {item.source}" for item in parameters]
+    return "\n".join(lines) + "\n"

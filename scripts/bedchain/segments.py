@@ -1,0 +1,210 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Segments of a DEM run: each ends in a restart of both solvers and exists either whole or not at all.
+
+A segment is made in a folder ``<name>.part`` and renamed when everything in it is complete, so that whatever
+is killed, the folder of the finished ones is the state to go on from.
+"""
+
+import fcntl
+import hashlib
+import json
+import os
+import re
+import shutil
+from collections.abc import Iterator
+from contextlib import contextmanager
+from dataclasses import asdict, dataclass
+from pathlib import Path
+
+from bedchain.errors import UserError
+
+STAMP_DIGITS = 12  # of sha256: enough that two sets of inputs never share a folder
+SETTLED = "settled"
+RESTART = "particles.restart"
+RECORD = "segment.json"
+
+
+@dataclass(frozen=True)
+class Segment:
+    """One finished segment.
+
+    Attributes
+    ----------
+    index : int
+        From 1.
+    start_step, end_step : int
+        Steps of the particles.
+    folder : str
+        Its folder's name.
+    wall_s, dem_s, exchange_s, gas_s : float
+        Wall time of the solver's loop and its split [s].
+    """
+
+    index: int
+    start_step: int
+    end_step: int
+    folder: str
+    wall_s: float
+    dem_s: float
+    exchange_s: float
+    gas_s: float
+
+
+def input_stamp(files: list[Path], ranks: int) -> str:
+    """Name for a set of inputs: the same bytes in the same order on as many ranks give the same run."""
+    digest = hashlib.sha256(f"{ranks} ranks".encode())
+    for file in files:
+        digest.update(hashlib.sha256(file.read_bytes()).digest())
+    return digest.hexdigest()[:STAMP_DIGITS]
+
+
+def read_parameters(file: Path) -> dict[str, float | str]:
+    """Numbers and words of a LIGGGHTS include (``variable name equal value  # comment``).
+
+    Raises
+    ------
+    UserError
+        Where the file is missing.
+    """
+    if not file.exists():
+        raise UserError(f"{file} is missing: run scripts/write_parameters.py first")
+    found = re.findall(
+        r"^variable (\w+) (equal|string) (\S+)", file.read_text(encoding="utf-8"), re.MULTILINE
+    )
+    return {name: float(value) if style == "equal" else value for name, style, value in found}
+
+
+@contextmanager
+def exclusive(folder: Path) -> Iterator[None]:
+    """Hold `folder` for one run at a time; the lock goes with the process, however it ends.
+
+    Raises
+    ------
+    UserError
+        Where another process holds it.
+    """
+    folder.mkdir(parents=True, exist_ok=True)
+    with (folder / "lock").open("a+", encoding="utf-8") as lock:
+        try:
+            fcntl.flock(lock, fcntl.LOCK_EX | fcntl.LOCK_NB)
+        except BlockingIOError:
+            lock.seek(0)
+            holder = lock.read().strip()
+            raise UserError(
+                f"{folder} is in use by process {holder}: wait for it, or end it with kill {holder}"
+            ) from None
+        lock.truncate(0)
+        lock.write(str(os.getpid()))
+        lock.flush()
+        yield
+
+
+@contextmanager
+def whole_folder(target: Path) -> Iterator[Path]:
+    """A folder to work in that becomes `target` only if the work succeeds; a torn one is cleared first."""
+    part = target.with_name(target.name + ".part")
+    shutil.rmtree(part, ignore_errors=True)
+    part.mkdir(parents=True)
+    yield part
+    for file in part.rglob("*"):
+        if file.is_file():
+            with file.open("rb") as stream:
+                os.fsync(stream.fileno())
+    os.replace(part, target)
+
+
+def finished_segments(folder: Path) -> list[Segment]:
+    """Finished segments of a run, in order, up to the first that is missing."""
+    segments: list[Segment] = []
+    while True:
+        record = folder / f"segment_{len(segments) + 1:04d}" / RECORD
+        if not record.exists():
+            return segments
+        segments.append(Segment(**json.loads(record.read_text(encoding="utf-8"))))
+
+
+def write_record(folder: Path, segment: Segment) -> None:
+    """Leave a segment's record in its folder; what has one is finished."""
+    (folder / RECORD).write_text(json.dumps(asdict(segment), indent=1), encoding="utf-8")
+
+
+def check_frames(folder: Path, start_step: int, end_step: int, frame_steps: int, suffix: str) -> None:
+    """Keep exactly the frames that a segment owns: after its start, up to its end, and the very first one.
+
+    A segment's first frame is the last one of the segment before; LIGGGHTS writes it again.
+
+    Raises
+    ------
+    UserError
+        Where a frame is missing or empty.
+    """
+    if start_step > 0:
+        (folder / f"frame_{start_step}.{suffix}").unlink(missing_ok=True)
+    first = 0 if start_step == 0 else start_step + frame_steps
+    for step in range(first, end_step + 1, frame_steps):
+        frame = folder / f"frame_{step}.{suffix}"
+        if not frame.exists() or frame.stat().st_size == 0:
+            raise UserError(
+                f"{frame} was not written: see the solver's log beside it, and check the disk's space"
+            )
+
+
+def manifest(
+    folder: Path, stamp: str, segments: list[Segment], end_step: int, ranks: int
+) -> dict[str, object]:
+    """What ``dem.json`` says: all frames up to the end in order, and the segments that hold them.
+
+    Parameters
+    ----------
+    folder : Path
+        ``results/<case>``.
+    stamp : str
+        Of the inputs; the run's folder is ``dem/<stamp>``.
+    segments : list of Segment
+        That reach the end.
+    end_step : int
+        Last step wanted.
+    ranks : int
+        MPI ranks.
+    """
+    parameters = read_parameters(folder / "parameters.lig")
+    step_s, frame_steps = float(parameters["dem_step"]), int(parameters["frame_steps"])
+    run = Path("dem") / stamp
+    frames = []
+    for step in range(0, end_step + 1, frame_steps):
+        owner = next(
+            item
+            for item in segments
+            if item.start_step < step <= item.end_step or item.start_step == step == 0
+        )
+        file = run / owner.folder / f"frame_{step}.{parameters['dump_suffix']}"
+        frames.append(
+            {
+                "step": step,
+                "time_s": step * step_s,
+                "file": str(file),
+                "bytes": (folder / file).stat().st_size,
+            }
+        )
+    return {
+        "stamp": stamp,
+        "ranks": ranks,
+        "dem_step_s": step_s,
+        "frame_interval_s": frame_steps * step_s,
+        "number": int(parameters["number"]),
+        "columns": ["id", "x", "z", "vx", "vz"],
+        "frames": frames,
+        "segments": [
+            {
+                "index": item.index,
+                "start_s": item.start_step * step_s,
+                "end_s": item.end_step * step_s,
+                "folder": str(run / item.folder),
+                "wall_s": item.wall_s,
+                "dem_s": item.dem_s,
+                "exchange_s": item.exchange_s,
+                "gas_s": item.gas_s,
+            }
+            for item in segments
+        ],
+    }

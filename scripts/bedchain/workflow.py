@@ -1,0 +1,136 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""What the Snakefile asks: the case, its keys, and the files that a rule depends on."""
+
+import ast
+from pathlib import Path
+from typing import Any
+
+from bedchain.case import Case, load_case, load_schema
+from bedchain.errors import UserError, report_user_errors
+from bedchain.parameters import solver_parameters
+
+TABLE_SECTIONS = (
+    "bed",
+    "particles",
+    "contact",
+    "gas",
+    "time",
+    "learning",
+    "comparison",
+    "cells",
+    "chain",
+    "mixing",
+)
+
+LIBRARY = Path("scripts/bedchain")
+CASES = Path("cases")
+
+
+def case_or_exit(name: str) -> Case:
+    """The checked case of a name, or one clear message and the end of snakemake, before anything runs.
+
+    Parameters
+    ----------
+    name : str
+        A folder in ``cases/``.
+
+    Raises
+    ------
+    SystemExit
+        Code 1, where there is no such case, or its file has problems.
+    """
+    with report_user_errors():
+        known = sorted(file.parent.name for file in CASES.glob("*/case.yaml"))
+        if name not in known:
+            raise UserError(
+                f"there is no case {name!r}: take --config case=NAME with one of {', '.join(known)}"
+            )
+        return load_case(CASES / name / "case.yaml")
+
+
+def pick(case: Case, *keys: str) -> dict[str, Any]:
+    """The values of dotted keys by their last name, or of a whole section: ``params: **pick(CASE, "cells")``.
+
+    Parameters
+    ----------
+    case : dict
+        A checked case.
+    *keys : str
+        Such as ``"bed.width_m"``, or a section such as ``"cells"``.
+
+    Raises
+    ------
+    KeyError
+        Where the case has no such key, or two of them share a last name.
+    """
+    picked: dict[str, Any] = {}
+    for key in keys:
+        section, _, name = key.partition(".")
+        part = {name: case[section][name]} if name else dict(case[section])
+        if shared := picked.keys() & part.keys():
+            raise KeyError(f"{key}: {', '.join(sorted(shared))} is picked twice")
+        picked |= part
+    return picked
+
+
+def solver_values(case: Case) -> dict[str, str]:
+    """Every number that the solvers get, by name; the particles run again where one changes."""
+    parameters = solver_parameters(case, load_schema())
+    return {
+        parameter.name: f"{parameter.name} = {parameter.value} [{parameter.unit}]" for parameter in parameters
+    }
+
+
+def table_values(case: Case) -> dict[str, Any]:
+    """Dotted key -> value, of the sections that Table 1 shows."""
+    return {f"{section}.{key}": value for section in TABLE_SECTIONS for key, value in case[section].items()}
+
+
+def modules(*names: str) -> list[str]:
+    """Files of library modules and of all that they import, as inputs of the rule that uses them.
+
+    Parameters
+    ----------
+    *names : str
+        Modules that the rule's script imports itself, such as ``"grid"``.
+
+    Returns
+    -------
+    list of str
+        Paths, sorted; a change in any of them reruns the rule.
+    """
+    found: set[str] = set()
+    waiting = list(names)
+    while waiting:
+        name = waiting.pop()
+        if name not in found:
+            found.add(name)
+            waiting += imported_modules(LIBRARY / f"{name}.py")
+    return sorted(str(LIBRARY / f"{name}.py") for name in found)
+
+
+def imported_modules(file: Path) -> list[str]:
+    """Names of the library's modules that a Python file imports, wherever in it the imports stand."""
+    names = []
+    for node in ast.walk(ast.parse(file.read_text(encoding="utf-8"))):
+        if isinstance(node, ast.Import):
+            names += [alias.name for alias in node.names]
+        elif isinstance(node, ast.ImportFrom) and node.module == "bedchain":
+            names += [f"bedchain.{alias.name}" for alias in node.names]
+        elif isinstance(node, ast.ImportFrom) and node.module:
+            names.append(node.module)
+    return sorted({name.split(".")[1] for name in names if name.startswith("bedchain.")})
+
+
+def source_files(folder: str, *patterns: str) -> list[str]:
+    """Files below a folder whose names match any of the patterns, sorted, without links that builds make.
+
+    Parameters
+    ----------
+    folder : str
+        Relative to the repository.
+    *patterns : str
+        Such as ``"*.C"``.
+    """
+    found = {file for pattern in patterns for file in Path(folder).rglob(pattern)}
+    return sorted(str(file) for file in found if file.is_file() and not file.is_symlink())

@@ -1,0 +1,58 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""A chain learned from the learning window: results/<case>/transitions_<model>.npz."""
+
+from pathlib import Path
+
+from bedchain import models
+from bedchain.cell_store import open_cells, window_frames
+from bedchain.frames import lag_frames
+from bedchain.stage import LOG, stage
+
+
+def build_transitions(
+    trajectory: Path, metadata: Path, cells: Path, transitions: Path,
+    model: str, estimator: str, lag_s: float, start_s: float, end_s: float,
+) -> None:  # fmt: skip
+    """Count the moves between cells in a window and make a chain of them.
+
+    Parameters
+    ----------
+    trajectory, metadata, cells : Path
+        ``trajectory.npy``, ``trajectory.json``, ``cells.npz``.
+    transitions : Path
+        Gets the chain, for `bedchain.models.load`.
+    model : str
+        A name in `bedchain.models.LEARNERS`.
+    estimator : {"literal", "per_step", "pooled"}
+        How counts become probabilities.
+    lag_s : float
+        Time of one step of the chain [s].
+    start_s, end_s : float
+        The learning window [s].
+
+    Raises
+    ------
+    DataError
+        An empty window, a lag that is no multiple of the frame interval; nothing is written then.
+    """
+    store = open_cells(cells)
+    frames = window_frames(trajectory, metadata, store, start_s, end_s)
+    chain = models.learn(model, frames, store.grid, lag_frames(lag_s, frames.interval_s), estimator)
+    models.save(chain, transitions)
+    for name, value in chain.report.items():
+        LOG.info("%s chain, %s: %.6g", model, name, value)
+
+
+if "snakemake" in globals():
+    with stage(snakemake.log[0]):
+        build_transitions(
+            Path(snakemake.input.trajectory),
+            Path(snakemake.input.metadata),
+            Path(snakemake.input.cells),
+            Path(snakemake.output.transitions),
+            snakemake.wildcards.model,
+            snakemake.params.estimator,
+            snakemake.params.lag_s,
+            snakemake.params.start_s,
+            snakemake.params.end_s,
+        )

@@ -1,0 +1,96 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Mixing by the DEM and by the chains, and how they differ: results/<case>/mixing.csv and metrics.csv."""
+
+from pathlib import Path
+
+import numpy as np
+import pandas as pd
+
+from bedchain import comparison
+from bedchain.cell_store import open_cells, window_frames
+from bedchain.distribution import observed_shares
+from bedchain.errors import UserError
+from bedchain.frames import lag_frames
+from bedchain.mixing import remaining_from_positions, sides
+from bedchain.stage import LOG, stage, write_csv
+from bedchain.storage import read_arrays
+
+
+def compare_mixing(
+    trajectory: Path, metadata: Path, cells: Path, chains: dict[str, Path], bed_series: Path,
+    mixing: Path, metrics: Path,
+    start_s: float, end_s: float, split_x_m: float, split_z_m: float, batch_height_m: float,
+    learn_start_s: float, learn_end_s: float, weight_Pa: float,
+) -> None:  # fmt: skip
+    """Put the curves of the DEM and of all chains in one table, and their differences in another.
+
+    Parameters
+    ----------
+    trajectory, metadata, cells : Path
+        ``trajectory.npy``, ``trajectory.json``, ``cells.npz``.
+    chains : dict of str to Path
+        ``chain_<model>.npz`` by model.
+    bed_series : Path
+        ``bed_series.csv`` of the solver.
+    mixing, metrics : Path
+        Tables to make.
+    start_s, end_s : float
+        The comparison window [s].
+    split_x_m, split_z_m : float
+        Lines between left and right, low and up [m].
+    batch_height_m : float
+        Height of the batch of Figs. 3 and 4 [m].
+    learn_start_s, learn_end_s : float
+        The learning window, over which pressure drop and height of the bed are averaged [s].
+    weight_Pa : float
+        Weight of the particles over the bed's cross section [Pa].
+    """
+    store = open_cells(cells)
+    frames = window_frames(trajectory, metadata, store, start_s, end_s)
+    dem = remaining_from_positions(frames.x_m, frames.z_m, split_x_m, split_z_m)
+    places = zip(frames.x_m, frames.z_m, strict=True)
+    on_side = np.array([sides(x, z, split_x_m, split_z_m).mean(axis=1) for x, z in places])
+    curves = [comparison.curve_table(frames.times_s, "dem", dem)]
+    rows = comparison.bed_metrics(comparison.read_series(bed_series), weight_Pa, learn_start_s, learn_end_s)
+    rows += [comparison.metric("particles", "dem", frames.cells.shape[1])]
+    rows += comparison.dem_metrics(on_side, dem)
+    for model, path in chains.items():
+        chain = read_arrays(path)
+        observed = observed_shares(store, chain["moments_s"], start_s, batch_height_m)
+        lag = lag_frames(float(chain["lag_s"]), frames.interval_s)
+        if len(chain["times_s"]) != len(dem[::lag]):
+            raise UserError(f"{path} covers another window than {start_s:g} to {end_s:g} s: delete it")
+        for source, remaining, share in (
+            (model, chain["remaining"], chain["batch_share"]),
+            (f"{model}_monte_carlo", chain["remaining_monte_carlo"], chain["batch_share_monte_carlo"]),
+        ):
+            curves.append(comparison.curve_table(chain["times_s"], source, remaining))
+            rows += comparison.model_metrics(source, remaining, dem[::lag])
+            rows += comparison.batch_metrics(source, chain["moments_s"], share, observed)
+        rows += comparison.report_metrics(model, str(chain["report"]))
+    table = pd.DataFrame(rows)
+    write_csv(pd.concat(curves, ignore_index=True), mixing)
+    write_csv(table, metrics)
+    for row in table[table["quantity"].str.startswith(("error_rms", "pressure_drop_over"))].itertuples():
+        LOG.info("%s, %s: %.4g", row.source, row.quantity, row.value)
+
+
+if "snakemake" in globals():
+    with stage(snakemake.log[0]):
+        compare_mixing(
+            Path(snakemake.input.trajectory),
+            Path(snakemake.input.metadata),
+            Path(snakemake.input.cells),
+            dict(zip(snakemake.params.models, map(Path, snakemake.input.chains), strict=True)),
+            Path(snakemake.input.bed_series),
+            Path(snakemake.output.mixing),
+            Path(snakemake.output.metrics),
+            snakemake.params.start_s,
+            snakemake.params.end_s,
+            snakemake.params.split_x_m,
+            snakemake.params.split_z_m,
+            snakemake.params.batch_height_m,
+            snakemake.params.learn_start_s,
+            snakemake.params.learn_end_s,
+            snakemake.params.weight_Pa,
+        )

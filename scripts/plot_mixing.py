@@ -1,0 +1,111 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Fig. 5: the share of each marked group that is still on its side, by the DEM and by the chains."""
+
+from pathlib import Path
+
+import pandas as pd
+from matplotlib import pyplot as plt
+from matplotlib.axes import Axes
+
+from bedchain.errors import UserError
+from bedchain.figures import DOUBLE_COLUMN_IN, figure_style, save_figure
+from bedchain.stage import stage, write_csv
+
+PANELS = {
+    "radial": {"left": "left half", "right": "right half"},
+    "axial": {"low": "lower part", "up": "upper part"},
+}
+MONTE_CARLO = "_monte_carlo"
+DASHES = {"static": (0, (4, 1.5)), "dynamic": (0, (1.2, 1.2))}
+MARKERS = {"static": "o", "dynamic": "^"}
+MARKS_PER_CURVE = 14
+MIXED_COLOUR = "#888888"
+
+
+def plot_mixing(
+    mixing: Path, metrics: Path, png: Path, pdf: Path, csv: Path,
+    direction: str, colours: dict[str, str], resolution_dpi: int,
+) -> None:  # fmt: skip
+    """Draw both groups of one direction: DEM, exact expectation and Monte Carlo of each chain.
+
+    Parameters
+    ----------
+    mixing, metrics : Path
+        ``mixing.csv`` and ``metrics.csv`` of compare_mixing.
+    png, pdf, csv : Path
+        Figure in two forms, and the numbers behind it.
+    direction : {"radial", "axial"}
+        Left and right (Fig. 5a), or low and up (Fig. 5b).
+    colours : dict of str to str
+        Colours of ``dem`` and of each model.
+    resolution_dpi : int
+        Of the png [dots per inch].
+
+    Raises
+    ------
+    UserError
+        The direction has no curves.
+    """
+    table = pd.read_csv(mixing).query("direction == @direction")
+    if table.empty:
+        raise UserError(f"{mixing} has no curves of direction {direction!r}; delete it and run again")
+    shares, mixed = (_shares(pd.read_csv(metrics), when) for when in ("start", "mean"))
+    with figure_style():
+        figure, panels = plt.subplots(1, 2, figsize=(DOUBLE_COLUMN_IN, 2.65), sharex=True, sharey=True)
+        for axes, (group, name) in zip(panels, PANELS[direction].items(), strict=True):
+            _draw_group(axes, table[table["group"] == group], colours, mixed[group])
+            axes.set_title(f"{name}: {100 * shares[group]:.0f} % of the particles at the start", loc="left")
+            axes.set_xlabel("time [s]")
+        panels[0].set_ylabel("share still on its side [1]")
+        lowest = min(table["fraction_remaining_1"].min(), *(mixed[group] for group in PANELS[direction]))
+        panels[0].set_ylim(max(0.0, lowest - 0.06), 1.03)
+        panels[0].set_xlim(table["time_s"].min(), table["time_s"].max())
+        figure.legend(
+            *panels[0].get_legend_handles_labels(), loc="outside upper center", ncols=6, handlelength=2.4
+        )
+        save_figure(figure, png, pdf, resolution_dpi)
+    write_csv(table, csv)
+
+
+def _draw_group(axes: Axes, table: pd.DataFrame, colours: dict[str, str], mixed: float) -> None:
+    axes.axhline(mixed, color=MIXED_COLOUR, linewidth=0.8, linestyle=(0, (6, 2, 1, 2)), label="well mixed")
+    for source, curve in table.groupby("source", sort=False):
+        model = str(source).removesuffix(MONTE_CARLO)
+        if source == "dem":
+            axes.plot(
+                curve["time_s"], curve["fraction_remaining_1"], color=colours["dem"], lw=1.6, label="DEM"
+            )
+        elif str(source).endswith(MONTE_CARLO):
+            every = max(1, len(curve) // MARKS_PER_CURVE)
+            axes.plot(
+                curve["time_s"], curve["fraction_remaining_1"], MARKERS.get(model, "o"),
+                markevery=every, ms=3.2,
+                color=colours[model], mfc="white", mew=0.9, label=f"{model}, Monte Carlo", clip_on=False,
+            )  # fmt: skip
+        else:
+            axes.plot(
+                curve["time_s"], curve["fraction_remaining_1"], color=colours[model],
+                linestyle=DASHES.get(model, "--"), label=f"{model} chain",
+            )  # fmt: skip
+    axes.grid(axis="y", color="#e2e2e2", linewidth=0.5)
+    axes.set_axisbelow(True)
+
+
+def _shares(metrics: pd.DataFrame, when: str) -> dict[str, float]:
+    """Share of all particles on each side when they were marked, or on average."""
+    rows = metrics[metrics["quantity"].str.startswith(f"share_{when}_") & (metrics["source"] == "dem")]
+    return dict(zip(rows["quantity"].str.removeprefix(f"share_{when}_"), rows["value"], strict=True))
+
+
+if "snakemake" in globals():
+    with stage(snakemake.log[0]):
+        plot_mixing(
+            Path(snakemake.input.mixing),
+            Path(snakemake.input.metrics),
+            Path(snakemake.output.png),
+            Path(snakemake.output.pdf),
+            Path(snakemake.output.csv),
+            snakemake.params.direction,
+            snakemake.params.colours,
+            snakemake.params.resolution_dpi,
+        )

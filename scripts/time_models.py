@@ -1,0 +1,250 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""What each model costs, measured: results/<case>/timing.csv. The DEM's own time comes from its manifest."""
+
+import resource
+import time
+from collections.abc import Callable
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pandas as pd
+
+from bedchain import counting, dynamic, models
+from bedchain.cell_store import frames_up_to, open_cells, window_frames
+from bedchain.errors import UserError
+from bedchain.estimators import transition_matrix
+from bedchain.frames import Frames, lag_frames, whole_steps
+from bedchain.grid import Grid
+from bedchain.stage import LOG, stage, write_csv
+from bedchain.trajectory import read_manifest
+
+# a median of many repeats where they are short, of a few where one takes seconds
+REPEATS = 15
+ENOUGH_S = 5.0
+FEWEST = 3
+MEGABYTE = 1024.0
+CLEAR_PEAK = "5"
+
+Row = dict[str, Any]
+
+
+def time_models(
+    dem: Path, trajectory: Path, metadata: Path, cells: Path, transitions: dict[str, Path], timing: Path,
+    learn_start_s: float, learn_end_s: float, start_s: float, end_s: float,
+    estimator: str, split_x_m: float, split_z_m: float, seed: int,
+) -> None:  # fmt: skip
+    """Time counting, estimating, exact propagation and Monte Carlo of each chain, beside the DEM.
+
+    Parameters
+    ----------
+    dem, trajectory, metadata, cells : Path
+        ``dem.json``, ``trajectory.npy``, ``trajectory.json``, ``cells.npz``.
+    transitions : dict of str to Path
+        ``transitions_<model>.npz`` by model.
+    timing : Path
+        Gets stage, wall_s, cpu_s, peak_rss_mb, work, work_unit; medians of repeats, data in memory, compiled.
+    learn_start_s, learn_end_s, start_s, end_s : float
+        The learning and the comparison window [s].
+    estimator : {"literal", "per_step", "pooled"}
+        How counts become probabilities.
+    split_x_m, split_z_m : float
+        Lines between left and right, low and up [m].
+    seed : int
+        Of the Monte Carlo runs.
+    """
+    store = open_cells(cells)
+    rows = [dem_row(read_manifest(dem), start_s, end_s)]
+    learning = in_memory(window_frames(trajectory, metadata, store, learn_start_s, learn_end_s))
+    comparison = window_frames(trajectory, metadata, store, start_s, end_s)
+    for model, path in transitions.items():
+        chain = models.load(path)
+        lag = lag_frames(chain.lag_s, comparison.interval_s)
+        start = in_memory(frames_up_to(trajectory, metadata, store, start_s, lag))
+        steps = whole_steps(len(comparison.times_s), lag)
+        rows += learning_rows(model, learning, store.grid, lag, chain.lag_s, estimator)
+        rows += running_rows(model, chain, start, steps, (split_x_m, split_z_m), seed)
+    write_csv(pd.DataFrame(rows), timing)
+    for row in rows:
+        LOG.info("%-22s %.4g s", row["stage"], row["wall_s"])
+
+
+def dem_row(manifest: dict[str, Any], start_s: float, end_s: float) -> Row:
+    """Time that the DEM took for a window, segments that stick out of it counted by their part.
+
+    Parameters
+    ----------
+    manifest : dict
+        Of the DEM run.
+    start_s, end_s : float
+        The window [s].
+
+    Returns
+    -------
+    dict
+
+    Raises
+    ------
+    UserError
+        The segments do not cover the window.
+    """
+    wall = covered = 0.0
+    for segment in manifest["segments"]:
+        inside = max(0.0, min(end_s, segment["end_s"]) - max(start_s, segment["start_s"]))
+        wall += segment["wall_s"] * inside / (segment["end_s"] - segment["start_s"])
+        covered += inside
+    if abs(covered - (end_s - start_s)) > manifest["frame_interval_s"] / 2:
+        raise UserError(f"dem.json: its segments cover {covered:g} s of the {end_s - start_s:g} s to compare")
+    work = manifest["number"] * (end_s - start_s) / manifest["dem_step_s"]
+    return {
+        "stage": "dem", "wall_s": wall, "cpu_s": wall * manifest["ranks"], "peak_rss_mb": np.nan,
+        "work": round(work), "work_unit": "particle steps",
+    }  # fmt: skip
+
+
+def learning_rows(
+    model: str, learning: Frames, grid: Grid, lag: int, lag_s: float, estimator: str
+) -> list[Row]:
+    """Counting and estimating of one chain.
+
+    Parameters
+    ----------
+    model : str
+        ``static`` or ``dynamic``.
+    learning : Frames
+        The learning window, in memory.
+    grid : Grid
+    lag : int
+        Frames in a step.
+    lag_s : float
+        The same [s].
+    estimator : str
+
+    Returns
+    -------
+    list of dict
+    """
+    cells, n_cells = learning.cells, grid.n_cells
+    moves = (len(cells) - lag) * cells.shape[1]
+    count: Callable[[], Any]
+    if model == "static":
+        count = lambda: counting.count_moves(cells, n_cells, lag)  # noqa: E731
+        counts = count()
+        estimate: Callable[[], Any] = lambda: transition_matrix(counts, estimator)  # noqa: E731
+    else:
+        count = lambda: (counting.count_pairs(cells, n_cells, lag), counting.count_moves(cells, n_cells, lag))  # noqa: E731
+        double, single = count()
+        estimate = lambda: dynamic.from_counts(double, single, grid, lag_s, estimator)  # noqa: E731
+    return [
+        measured(f"{model}_count", count, moves, "particle moves"),
+        measured(f"{model}_matrix", estimate, n_cells, "cells"),
+    ]
+
+
+def running_rows(
+    model: str, chain: models.Chain, start: Frames, steps: int, splits: tuple[float, float], seed: int
+) -> list[Row]:
+    """Exact mixing curves, and a Monte Carlo of every particle, over the comparison window.
+
+    Parameters
+    ----------
+    model : str
+    chain : Chain
+    start : Frames
+        Up to the start of the window, in memory.
+    steps : int
+        Steps of the chain.
+    splits : (float, float)
+        Lines between left and right, low and up [m].
+    seed : int
+
+    Returns
+    -------
+    list of dict
+    """
+    moves = steps * start.cells.shape[1]
+
+    def monte_carlo() -> None:
+        for _ in chain.paths(start, steps, np.random.default_rng(seed)):
+            pass
+
+    return [
+        measured(f"{model}_exact", lambda: chain.mixing(start, *splits, steps), steps, "steps"),
+        measured(f"{model}_monte_carlo", monte_carlo, moves, "particle moves"),
+    ]
+
+
+def measured(name: str, kernel: Callable[[], Any], work: float, work_unit: str) -> Row:
+    """Medians of repeated runs of a kernel, after one run that compiles what it needs.
+
+    Parameters
+    ----------
+    name : str
+        Name of the stage.
+    kernel : callable
+        What to time.
+    work : float
+        How much one run does, in ``work_unit``.
+    work_unit : str
+
+    Returns
+    -------
+    dict
+        One row of timing.csv; the peak is that of the whole process while the kernel ran.
+    """
+    kernel()
+    _forget_peak()
+    wall, cpu = [], []
+    while len(wall) < FEWEST or (len(wall) < REPEATS and sum(wall) < ENOUGH_S):
+        begin = time.perf_counter(), time.process_time()
+        kernel()
+        wall.append(time.perf_counter() - begin[0])
+        cpu.append(time.process_time() - begin[1])
+    return {
+        "stage": name, "wall_s": float(np.median(wall)), "cpu_s": float(np.median(cpu)),
+        "peak_rss_mb": _peak_mb(), "work": work, "work_unit": work_unit,
+    }  # fmt: skip
+
+
+def in_memory(frames: Frames) -> Frames:
+    """Frames copied out of their memory maps, so that no disk is timed."""
+    return Frames(
+        np.array(frames.times_s), np.array(frames.x_m), np.array(frames.z_m),
+        np.ascontiguousarray(np.array(frames.cells)),
+    )  # fmt: skip
+
+
+def _forget_peak() -> None:
+    """Let the kernel start its record of the highest memory use again, where it lets us."""
+    try:
+        Path("/proc/self/clear_refs").write_text(CLEAR_PEAK)
+    except OSError:
+        LOG.info("the peak of the memory use cannot be reset here: it is that of the process so far")
+
+
+def _peak_mb() -> float:
+    try:
+        status = Path("/proc/self/status").read_text()
+        return float(status.partition("VmHWM:")[2].split()[0]) / MEGABYTE
+    except (OSError, IndexError):
+        return resource.getrusage(resource.RUSAGE_SELF).ru_maxrss / MEGABYTE
+
+
+if "snakemake" in globals():
+    with stage(snakemake.log[0]):
+        time_models(
+            Path(snakemake.input.dem),
+            Path(snakemake.input.trajectory),
+            Path(snakemake.input.metadata),
+            Path(snakemake.input.cells),
+            dict(zip(snakemake.params.models, map(Path, snakemake.input.transitions), strict=True)),
+            Path(snakemake.output.timing),
+            snakemake.params.learning["start_s"],
+            snakemake.params.learning["end_s"],
+            snakemake.params.comparison["start_s"],
+            snakemake.params.comparison["end_s"],
+            snakemake.params.estimator,
+            snakemake.params.split_x_m,
+            snakemake.params.split_z_m,
+            snakemake.params.seed,
+        )

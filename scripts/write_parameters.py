@@ -1,0 +1,60 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Write a case's numbers for both solvers: parameters.lig (LIGGGHTS) and caseParameters (OpenFOAM).
+
+usage: python scripts/write_parameters.py cases/short/case.yaml results/short
+"""
+
+import argparse
+import os
+from pathlib import Path
+
+from bedchain.case import load_case, load_schema
+from bedchain.disk import require_disk, run_bytes
+from bedchain.errors import report_user_errors
+from bedchain.parameters import liggghts_text, openfoam_text, solver_parameters
+
+
+def write_parameters(case_file: Path, folder: Path) -> None:
+    """Check a case and the disk, then write both parameter files.
+
+    Parameters
+    ----------
+    case_file : Path
+        The case.
+    folder : Path
+        Gets ``parameters.lig`` and ``caseParameters``; made where missing. Equal files are left alone.
+
+    Raises
+    ------
+    UserError
+        Where the case cannot be run or the disk is too full; nothing is written then.
+    """
+    case = load_case(case_file)
+    parameters = solver_parameters(case, load_schema())
+    folder.mkdir(parents=True, exist_ok=True)
+    require_disk(folder, run_bytes(case))
+    write_if_changed(folder / "parameters.lig", liggghts_text(parameters))
+    write_if_changed(folder / "caseParameters", openfoam_text(parameters))
+
+
+def write_if_changed(file: Path, text: str) -> None:
+    """Write `text` under a temporary name and move it to `file`, unless it is there already."""
+    if file.exists() and file.read_text(encoding="utf-8") == text:
+        return
+    temporary = file.with_name(file.name + ".part")
+    temporary.write_text(text, encoding="utf-8")
+    os.replace(temporary, file)
+
+
+def main() -> None:
+    """Command line."""
+    parser = argparse.ArgumentParser(description="write a case's numbers for LIGGGHTS and OpenFOAM")
+    parser.add_argument("case_file", type=Path, help="cases/<name>/case.yaml")
+    parser.add_argument("folder", type=Path, help="results/<name>")
+    arguments = parser.parse_args()
+    with report_user_errors():
+        write_parameters(arguments.case_file, arguments.folder)
+
+
+if __name__ == "__main__":
+    main()

@@ -1,0 +1,266 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""The workflow by dry runs on a copy of the repository whose results are made up and up to date."""
+
+import os
+import re
+import shutil
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+
+sys.path.insert(0, str(Path(__file__).resolve().parents[1] / "scripts"))
+
+from bedchain.workflow import imported_modules, modules, source_files
+
+ROOT = Path(__file__).resolve().parents[1]
+COPIED = ("Snakefile", "cases", "scripts", "openfoam_case", "liggghts_inputs", "envs/python.yaml")
+ALL = {
+    *(
+        "build_solver",
+        "write_parameters",
+        "run_dem",
+        "parse_dumps",
+        "assign_cells",
+        "build_transitions",
+        "run_chain",
+    ),
+    *("compare_mixing", "time_models", "plot_cells", "plot_cost", "plot_distribution", "plot_mixing"),
+    *("plot_snapshot", "write_table", "write_provenance"),
+}
+PARTICLES = {"build_solver", "write_parameters", "run_dem", "parse_dumps"}
+WHOLE_BED = {"plot_snapshot"}  # needs particles and gas, no cells
+
+
+def snakemake(folder: Path, *arguments: str) -> subprocess.CompletedProcess[str]:
+    """Run snakemake in a folder; its own caches stay in there."""
+    command = [sys.executable, "-m", "snakemake", "--cores", "2", *arguments]
+    environment = os.environ | {"XDG_CACHE_HOME": str(folder / ".cache"), "PYTHONDONTWRITEBYTECODE": "1"}
+    return subprocess.run(command, cwd=folder, env=environment, capture_output=True, text=True, check=False)
+
+
+def planned(folder: Path, *arguments: str) -> dict[str, int]:
+    """Rules that a dry run would run, with the number of their jobs."""
+    done = snakemake(folder, "--dry-run", *arguments)
+    assert done.returncode == 0, done.stdout + done.stderr
+    rules = re.findall(r"^(?:local)?rule (\w+):$", done.stdout + done.stderr, re.M)
+    return {rule: rules.count(rule) for rule in rules if rule != "all"}
+
+
+@pytest.fixture(scope="module")
+def finished(tmp_path_factory):
+    """A copy of the repository in which every result is there and up to date."""
+    folder = tmp_path_factory.mktemp("finished")
+    for name in COPIED:
+        (folder / name).parent.mkdir(parents=True, exist_ok=True)
+        copy = shutil.copytree if (ROOT / name).is_dir() else shutil.copy2
+        copy(ROOT / name, folder / name)
+    summary = snakemake(folder, "--summary")
+    assert summary.returncode == 0, summary.stderr
+    for line in summary.stdout.splitlines()[1:]:
+        file = folder / line.split("\t")[0]
+        file.parent.mkdir(parents=True, exist_ok=True)
+        file.write_text("made up\n", encoding="utf-8")
+    touched = snakemake(folder, "--touch", "--forceall")
+    assert touched.returncode == 0, touched.stderr
+    return folder
+
+
+@pytest.fixture
+def case(finished):
+    """Editor of the short case of the finished copy; the file is put back afterwards."""
+    file = finished / "cases" / "short" / "case.yaml"
+    text = file.read_text(encoding="utf-8")
+
+    def edit(section: str, key: str, value: str) -> None:
+        body = file.read_text(encoding="utf-8")
+        body = re.sub(rf"^({section}:\n(?:  .*\n)*?)  {key}:.*\n", r"\1", body, flags=re.M)
+        if re.search(rf"^{section}:\n", body, re.M):
+            body = re.sub(rf"^{section}:\n", f"{section}:\n  {key}: {value}\n", body, flags=re.M)
+        else:
+            body += f"{section}:\n  {key}: {value}\n"
+        assert body != file.read_text(encoding="utf-8")
+        file.write_text(body, encoding="utf-8")
+
+    yield edit
+    file.write_text(text, encoding="utf-8")
+
+
+@pytest.fixture
+def results(finished):
+    """Contents of all results, to see that none is lost."""
+    return lambda: {file: file.read_bytes() for file in (finished / "results").rglob("*") if file.is_file()}
+
+
+def test_nothing_changed_means_nothing_to_be_done(finished):
+    done = snakemake(finished, "--dry-run")
+    assert "Nothing to be done" in done.stdout + done.stderr
+
+
+def test_everything_runs_in_an_empty_folder(finished, tmp_path):
+    for name in COPIED:
+        (tmp_path / name).parent.mkdir(parents=True, exist_ok=True)
+        (tmp_path / name).symlink_to(finished / name)
+    assert set(planned(tmp_path)) == ALL
+
+
+def test_a_comment_in_the_case_file_runs_nothing(finished, case):
+    file = finished / "cases" / "short" / "case.yaml"
+    case("figures", "batch_height_m", "0.027  # three rows")
+    file.write_text(file.read_text(encoding="utf-8") + "# a comment\n", encoding="utf-8")
+    assert planned(finished) == {}
+
+
+def test_another_grid_runs_the_cells_and_what_follows(finished, case):
+    case("cells", "rows", "100")
+    assert set(planned(finished)) == ALL - PARTICLES - WHOLE_BED
+
+
+@pytest.mark.parametrize(
+    ("key", "value", "jobs"),
+    [
+        ("cells_colour", "red", {"plot_cells": 1}),
+        ("cost_colour", "red", {"plot_cost": 1}),
+        ("distribution_colour_map", "magma", {"plot_distribution": 2}),
+        ("dem_colour", "red", {"plot_mixing": 2}),
+        ("snapshot_colour_map", "magma", {"plot_snapshot": 1}),
+    ],
+)
+def test_a_colour_runs_only_its_figure(finished, case, key, value, jobs):
+    case("figures", key, value)
+    assert planned(finished) == jobs
+
+
+@pytest.mark.parametrize(
+    ("section", "key", "value"),
+    [
+        ("gas", "drag_law", "di_felice"),
+        ("gas", "superficial_velocity_m_s", "1.4"),
+        ("contact", "friction_1", "0.4"),
+        ("time", "dem_step_s", "1.0e-5"),
+    ],
+)
+def test_physics_runs_the_particles_and_what_follows(finished, case, section, key, value):
+    case(section, key, value)
+    assert set(planned(finished)) == ALL - {"build_solver"}
+
+
+def test_a_later_end_lets_the_particles_go_on_with_the_same_parameters(finished, case):
+    case("time", "end_s", "6.0")
+    assert set(planned(finished)) == ALL - {"build_solver", "write_parameters"}
+
+
+def test_another_estimator_leaves_the_cells_alone(finished, case):
+    case("chain", "estimator", "per_step")
+    assert set(planned(finished)) == ALL - PARTICLES - WHOLE_BED - {"assign_cells", "plot_cells"}
+
+
+def test_another_batch_leaves_the_matrices_alone(finished, case):
+    case("figures", "batch_height_m", "0.018")
+    jobs = planned(finished)
+    assert "run_chain" in jobs and "plot_distribution" in jobs
+    assert not {"build_transitions", "assign_cells", "time_models"} & set(jobs)
+
+
+@pytest.mark.parametrize(
+    ("file", "first"),
+    [
+        ("liggghts_inputs/in.settle", "run_dem"),
+        ("openfoam_case/system/fvSolution", "run_dem"),
+        ("openfoam_case/solver/bedFoam/dragLaws.C", "build_solver"),
+        ("scripts/bedchain/grid.py", "assign_cells"),
+        ("scripts/bedchain/frames.py", "parse_dumps"),
+    ],
+)
+def test_an_edited_source_runs_what_depends_on_it(finished, file, first):
+    edited = finished / file
+    content, times = edited.read_bytes(), edited.stat()
+    edited.write_bytes(content + b"\n")
+    try:
+        jobs = planned(finished)
+    finally:
+        edited.write_bytes(content)
+        os.utime(edited, ns=(times.st_atime_ns, times.st_mtime_ns))
+    assert first in jobs and "compare_mixing" in jobs
+
+
+@pytest.mark.parametrize(
+    ("section", "key", "value", "said"),
+    [
+        ("bed", "widht_m", "0.1", "did you mean width_m?"),
+        ("particles", "diameter_m", "-1.0e-3", "above 0"),
+        ("bed", "width_m", "5.0e-4", "narrower than a particle"),
+        ("time", "dem_step_s", "1.0e-4", "Rayleigh"),
+        ("time", "frame_interval_s", "0.02501", "multiple of time.dem_step_s"),
+        ("learning", "end_s", "50.0", "outside the simulated time"),
+    ],
+)
+def test_a_bad_case_stops_before_anything_and_loses_nothing(
+    finished, case, results, section, key, value, said
+):
+    before = results()
+    case(section, key, value)
+    done = snakemake(finished)
+    assert done.returncode != 0
+    assert f"{section}.{key}" in done.stderr and said in done.stderr
+    assert "cases/short/case.yaml" in done.stderr
+    assert "Traceback" not in done.stderr
+    assert results() == before
+
+
+def test_a_seed_that_is_no_prime_stops_before_anything(finished, results):
+    file = finished / "cases" / "short" / "case.yaml"
+    text, before = file.read_text(encoding="utf-8"), results()
+    file.write_text(re.sub(r"^seed: .*", "seed: 10001", text, flags=re.M), encoding="utf-8")
+    done = snakemake(finished)
+    file.write_text(text, encoding="utf-8")
+    assert done.returncode != 0 and "seed: 10001 is not prime" in done.stderr and "take 10007" in done.stderr
+    assert results() == before
+
+
+def test_an_unknown_case_is_told_the_known_ones(finished):
+    done = snakemake(finished, "--config", "case=shorter")
+    assert done.returncode != 0
+    assert "there is no case 'shorter'" in done.stderr and "paper, short" in done.stderr
+
+
+def rule_inputs(folder: Path) -> dict[str, tuple[str, set[str]]]:
+    """Rule -> its script, and the library files among the inputs of its first job."""
+    done = snakemake(folder, "--dry-run", "--forceall")
+    found = {}
+    text = (folder / "Snakefile").read_text(encoding="utf-8")
+    scripts = dict(re.findall(r"^rule (\w+):(?:\n(?:    .*)?)*?\n    script:\n        \"(.+)\"", text, re.M))
+    for rule, inputs in re.findall(r"^rule (\w+):\n    input: (.*)$", done.stdout + done.stderr, re.M):
+        if rule in scripts:
+            library = {name for name in inputs.split(", ") if name.startswith("scripts/bedchain/")}
+            found[rule] = (scripts[rule], library)
+    return found
+
+
+def test_every_script_rule_names_the_modules_of_its_script(finished):
+    rules = rule_inputs(finished)
+    assert set(rules) == ALL - {"build_solver", "write_parameters", "run_dem"}
+    for rule, (script, library) in rules.items():
+        assert script == f"scripts/{rule}.py"
+        imported = imported_modules(finished / script)
+        assert imported, f"{script} imports nothing of the library"
+        wanted = set(modules(*imported))
+        assert library == wanted, f"rule {rule} must name modules{tuple(imported)}: {library ^ wanted} differ"
+
+
+def test_imports_are_followed_through_modules(tmp_path):
+    file = tmp_path / "script.py"
+    file.write_text(
+        "import os\nfrom bedchain import grid\ndef f():\n    import bedchain.disk\n", encoding="utf-8"
+    )
+    assert imported_modules(file) == ["disk", "grid"]
+    assert "scripts/bedchain/errors.py" in modules("disk")
+
+
+def test_sources_are_found_sorted_and_without_links(tmp_path):
+    (tmp_path / "sub").mkdir()
+    for name in ("b.C", "sub/a.C", "c.o"):
+        (tmp_path / name).touch()
+    (tmp_path / "link.C").symlink_to(tmp_path / "b.C")
+    assert source_files(str(tmp_path), "*.C") == [f"{tmp_path}/b.C", f"{tmp_path}/sub/a.C"]
