@@ -155,7 +155,8 @@ rule build_transitions:
 
 rule run_chain:
     input:
-        modules("cell_store", "distribution", "errors", "frames", "mixing", "models", "stage", "storage"),
+        modules("bootstrap", "cell_store", "comparison", "distribution", "errors", "frames", "mixing"),
+        modules("models", "stage", "storage"),
         **TRAJECTORY,
         cells=rules.assign_cells.output.cells,
         transitions=rules.build_transitions.output.transitions,
@@ -168,8 +169,9 @@ rule run_chain:
     conda:
         "envs/python.yaml"
     params:
-        **pick(CASE, "comparison", "mixing", "chain.seed"),
+        **pick(CASE, "comparison", "mixing", "chain.estimator", "chain.seed"),
         **pick(CASE, "figures.batch_height_m", "figures.moments_s"),
+        learning=CASE["learning"],
     script:
         "scripts/run_chain.py"
 
@@ -218,7 +220,7 @@ rule time_models:
         "envs/python.yaml"
     threads: workflow.cores or 1
     params:
-        **pick(CASE, "chain"),
+        **pick(CASE, "mixing", "chain.models", "chain.estimator", "chain.seed"),
         learning=CASE["learning"],
         comparison=CASE["comparison"],
     script:
@@ -283,7 +285,7 @@ rule plot_cost:
 
 rule plot_distribution:
     input:
-        modules("cell_store", "distribution", "figures", "grid", "stage"),
+        modules("cell_store", "diagnostics", "distribution", "figures", "grid", "stage"),
         cells=rules.assign_cells.output.cells,
         chain=rules.run_chain.output.chain,
     output:
@@ -302,9 +304,10 @@ rule plot_distribution:
 
 rule plot_mixing:
     input:
-        modules("errors", "figures", "stage"),
+        modules("bootstrap", "errors", "figures", "stage", "storage"),
         mixing=rules.compare_mixing.output.mixing,
         metrics=rules.compare_mixing.output.metrics,
+        chains=expand(rules.run_chain.output.chain, model=MODELS),
     output:
         multiext(f"{FIGURES}/{{figure,fig5[ab]}}_{{direction,radial|axial}}", **FORMS),
     log:
@@ -312,7 +315,7 @@ rule plot_mixing:
     conda:
         "envs/python.yaml"
     params:
-        **pick(CASE, "figures.resolution_dpi"),
+        **pick(CASE, "chain.models", "figures.resolution_dpi"),
         direction="{direction}",
         colours={source: CASE["figures"][f"{source}_colour"] for source in ["dem", *MODELS]},
     script:

@@ -60,12 +60,13 @@ def compare_mixing(
         lag = lag_frames(float(chain["lag_s"]), frames.interval_s)
         if len(chain["times_s"]) != len(dem[::lag]):
             raise UserError(f"{path} covers another window than {start_s:g} to {end_s:g} s: delete it")
-        for source, remaining, share in (
-            (model, chain["remaining"], chain["batch_share"]),
-            (f"{model}_monte_carlo", chain["remaining_monte_carlo"], chain["batch_share_monte_carlo"]),
+        for source, how, replicates in (
+            (model, "", chain["remaining_replicates"]),
+            (f"{model}_monte_carlo", "_monte_carlo", None),
         ):
+            remaining, share = chain[f"remaining{how}"], chain[f"batch_share{how}"]
             curves.append(comparison.curve_table(chain["times_s"], source, remaining))
-            rows += comparison.model_metrics(source, remaining, dem[::lag])
+            rows += comparison.model_metrics(source, remaining, dem[::lag], replicates)
             rows += comparison.batch_metrics(source, chain["moments_s"], share, observed)
         rows += comparison.report_metrics(model, str(chain["report"]))
     table = pd.DataFrame(rows)

@@ -30,7 +30,7 @@ TOP_SHARE = 0.01
 # less than this share of the batch in all rows above is not worth the room
 NOT_SHOWN = 1e-3
 # room for labels and the colour bar beside and above the maps, and between two of them
-BESIDE_IN, ABOVE_IN, BETWEEN_IN = 1.45, 1.0, 0.18
+BESIDE_IN, ABOVE_IN, BETWEEN_IN = 1.45, 1.12, 0.18
 TALLEST_IN = 3.4
 
 
@@ -70,8 +70,13 @@ def plot_distribution(
         [100 * total_variation(*pair) for pair in zip(shares, expected, strict=True)]
         for shares in (observed, drawn)
     )
-    notes = [f"differs {one:.0f} %, dice {two:.0f} %" for one, two in zip(by_dem, by_dice, strict=True)]
-    LOG.info("total variation of the %s chain from the DEM at %s s: %s", model, moments, "; ".join(notes))
+    notes = [f"differs {one:.0f} %\n(dice {two:.0f} %)" for one, two in zip(by_dem, by_dice, strict=True)]
+    LOG.info(
+        "total variation of the %s chain from the DEM at %s s: %s",
+        model,
+        moments,
+        "; ".join(notes).replace("\n", " "),
+    )
     with figure_style():
         draw_moments(
             store.grid, moments, observed, expected, notes, model, colour_map, png, pdf, resolution_dpi

@@ -7,9 +7,11 @@ import pandas as pd
 from matplotlib import pyplot as plt
 from matplotlib.axes import Axes
 
+from bedchain.bootstrap import band
 from bedchain.errors import UserError
 from bedchain.figures import DOUBLE_COLUMN_IN, figure_style, save_figure
-from bedchain.stage import stage, write_csv
+from bedchain.stage import CSV_DIGITS, stage, write_csv
+from bedchain.storage import read_arrays
 
 PANELS = {
     "radial": {"left": "left half", "right": "right half"},
@@ -19,11 +21,12 @@ MONTE_CARLO = "_monte_carlo"
 DASHES = {"static": (0, (4, 1.5)), "dynamic": (0, (1.2, 1.2))}
 MARKERS = {"static": "o", "dynamic": "^"}
 MARKS_PER_CURVE = 14
+BAND_OPACITY = 0.2
 MIXED_COLOUR = "#888888"
 
 
 def plot_mixing(
-    mixing: Path, metrics: Path, png: Path, pdf: Path, csv: Path,
+    mixing: Path, metrics: Path, chains: dict[str, Path], png: Path, pdf: Path, csv: Path,
     direction: str, colours: dict[str, str], resolution_dpi: int,
 ) -> None:  # fmt: skip
     """Draw both groups of one direction: DEM, exact expectation and Monte Carlo of each chain.
@@ -32,6 +35,8 @@ def plot_mixing(
     ----------
     mixing, metrics : Path
         ``mixing.csv`` and ``metrics.csv`` of compare_mixing.
+    chains : dict of str to Path
+        ``chain_<model>.npz`` by model, for the error bars.
     png, pdf, csv : Path
         Figure in two forms, and the numbers behind it.
     direction : {"radial", "axial"}
@@ -49,6 +54,7 @@ def plot_mixing(
     table = pd.read_csv(mixing).query("direction == @direction")
     if table.empty:
         raise UserError(f"{mixing} has no curves of direction {direction!r}; delete it and run again")
+    table = table.merge(bands(chains), how="left", on=["time_s", "source", "group"])
     shares, mixed = (_shares(pd.read_csv(metrics), when) for when in ("start", "mean"))
     with figure_style():
         figure, panels = plt.subplots(1, 2, figsize=(DOUBLE_COLUMN_IN, 2.65), sharex=True, sharey=True)
@@ -67,6 +73,39 @@ def plot_mixing(
     write_csv(table, csv)
 
 
+def bands(chains: dict[str, Path]) -> pd.DataFrame:
+    """Bands that hold 95 % of the curves of chains learned again on blocks of the learning window.
+
+    Parameters
+    ----------
+    chains : dict of str to Path
+        ``chain_<model>.npz`` by model.
+
+    Returns
+    -------
+    DataFrame
+        time_s, source, group, band_low_1, band_high_1.
+    """
+    parts = []
+    for model, path in chains.items():
+        chain = read_arrays(path)
+        low, high = band(chain["remaining_replicates"])
+        for column, group in enumerate(chain["groups"]):
+            parts.append(
+                pd.DataFrame(
+                    {
+                        # as written to and read from mixing.csv
+                        "time_s": [float(CSV_DIGITS % time) for time in chain["times_s"]],
+                        "source": model,
+                        "group": str(group),
+                        "band_low_1": low[:, column],
+                        "band_high_1": high[:, column],
+                    }
+                )
+            )
+    return pd.concat(parts, ignore_index=True)
+
+
 def _draw_group(axes: Axes, table: pd.DataFrame, colours: dict[str, str], mixed: float) -> None:
     axes.axhline(mixed, color=MIXED_COLOUR, linewidth=0.8, linestyle=(0, (6, 2, 1, 2)), label="well mixed")
     for source, curve in table.groupby("source", sort=False):
@@ -83,6 +122,10 @@ def _draw_group(axes: Axes, table: pd.DataFrame, colours: dict[str, str], mixed:
                 color=colours[model], mfc="white", mew=0.9, label=f"{model}, Monte Carlo", clip_on=False,
             )  # fmt: skip
         else:
+            axes.fill_between(
+                curve["time_s"], curve["band_low_1"], curve["band_high_1"], color=colours[model],
+                alpha=BAND_OPACITY, linewidth=0,
+            )  # fmt: skip
             axes.plot(
                 curve["time_s"], curve["fraction_remaining_1"], color=colours[model],
                 linestyle=DASHES.get(model, "--"), label=f"{model} chain",
@@ -102,6 +145,7 @@ if "snakemake" in globals():
         plot_mixing(
             Path(snakemake.input.mixing),
             Path(snakemake.input.metrics),
+            dict(zip(snakemake.params.models, map(Path, snakemake.input.chains), strict=True)),
             Path(snakemake.output.png),
             Path(snakemake.output.pdf),
             Path(snakemake.output.csv),

@@ -7,20 +7,25 @@ from pathlib import Path
 import numpy as np
 
 from bedchain import models
-from bedchain.cell_store import frame_at, frames_up_to, open_cells
+from bedchain.bootstrap import block_chains, correlation_steps
+from bedchain.cell_store import frame_at, frames_up_to, open_cells, window_frames
+from bedchain.comparison import BLOCK_CORRELATIONS, FEWEST_BLOCKS
 from bedchain.distribution import batch_of
 from bedchain.errors import UserError
-from bedchain.frames import lag_frames, whole_steps, window
+from bedchain.frames import Frames, lag_frames, whole_steps, window
 from bedchain.mixing import GROUPS
 from bedchain.stage import LOG, stage
 from bedchain.storage import write_arrays
 
 # a moment lies on a step up to round-off of the division
 STEP_TOLERANCE = 1e-6
+# chains that are learned again for the error bars
+REPLICATES = 100
 
 
 def run_chain(
     trajectory: Path, metadata: Path, cells: Path, transitions: Path, chain: Path,
+    learning: dict[str, float], estimator: str,
     start_s: float, end_s: float, split_x_m: float, split_z_m: float,
     batch_height_m: float, moments_s: list[float], seed: int,
 ) -> None:  # fmt: skip
@@ -31,8 +36,13 @@ def run_chain(
     trajectory, metadata, cells, transitions : Path
         ``trajectory.npy``, ``trajectory.json``, ``cells.npz``, ``transitions_<model>.npz``.
     chain : Path
-        Gets times_s, groups, remaining and remaining_monte_carlo (n_times, 4), moments_s, batch_share and
+        Gets times_s, groups, remaining and remaining_monte_carlo (n_times, 4), remaining_replicates
+        (n, n_times, 4) of chains learned again on blocks of the learning window, moments_s, batch_share and
         batch_share_monte_carlo (n_moments, n_cells), lag_s, report (of learning, json).
+    learning : dict of str to float
+        ``start_s`` and ``end_s`` of the learning window [s].
+    estimator : {"literal", "per_step", "pooled"}
+        How counts become probabilities.
     start_s, end_s : float
         The comparison window [s].
     split_x_m, split_z_m : float
@@ -56,7 +66,8 @@ def run_chain(
     start = frames_up_to(trajectory, metadata, store, start_s, lag)
     batch = batch_of(store.grid, np.asarray(start.cells[-1]), batch_height_m)[None]
     at = moment_steps(moments_s, model.lag_s)
-    for_mixing, for_batch = np.random.default_rng(seed).spawn(2)
+    for_mixing, for_batch, for_blocks = np.random.default_rng(seed).spawn(3)
+    learned_from = window_frames(trajectory, metadata, store, learning["start_s"], learning["end_s"])
     splits = (split_x_m, split_z_m)
     write_arrays(
         chain,
@@ -65,6 +76,14 @@ def run_chain(
             "groups": np.array([group for _, group in GROUPS]),
             "remaining": model.mixing(start, *splits, steps),
             "remaining_monte_carlo": model.mixing(start, *splits, steps, for_mixing),
+            "remaining_replicates": block_chains(
+                lambda weights: models.learn(model.name, learned_from, store.grid, lag, estimator, weights),
+                lambda again: again.mixing(start, *splits, steps),
+                len(learned_from.times_s) - lag,
+                block_length(learned_from, split_x_m, lag),
+                REPLICATES,
+                for_blocks,
+            ),
             "moments_s": np.array(moments_s, float),
             "batch_share": model.densities(start, batch, at)[:, 0] / batch.sum(),
             "batch_share_monte_carlo": model.densities(start, batch, at, for_batch)[:, 0] / batch.sum(),
@@ -75,6 +94,29 @@ def run_chain(
     LOG.info(
         "%s chain: %d steps of %g s, a batch of %d particles", model.name, steps, model.lag_s, batch.sum()
     )
+
+
+def block_length(frames: Frames, split_x_m: float, lag: int) -> int:
+    """Length of the blocks that are drawn again: longer than the bed remembers, short against the window.
+
+    Parameters
+    ----------
+    frames : Frames
+        The learning window.
+    split_x_m : float
+        The line between left and right [m].
+    lag : int
+        Frames in a step of the chain.
+
+    Returns
+    -------
+    int
+        Steps.
+    """
+    left = np.array([(x < split_x_m).mean() for x in frames.x_m])
+    height = np.array([z.mean() for z in frames.z_m])
+    remembered = max(correlation_steps(left), correlation_steps(height), lag)
+    return int(np.clip(BLOCK_CORRELATIONS * remembered, 1, max(1, (len(left) - lag) // FEWEST_BLOCKS)))
 
 
 def moment_steps(moments_s: list[float], lag_s: float) -> list[int]:
@@ -113,6 +155,8 @@ if "snakemake" in globals():
             Path(snakemake.input.cells),
             Path(snakemake.input.transitions),
             Path(snakemake.output.chain),
+            snakemake.params.learning,
+            snakemake.params.estimator,
             snakemake.params.start_s,
             snakemake.params.end_s,
             snakemake.params.split_x_m,

@@ -42,7 +42,11 @@ if "snakemake" in globals():
     with stage(snakemake.log[0]):
         write_provenance(
             dict(snakemake.params.case),
-            {name: Path(snakemake.input[name]) for name in ("dem", "metrics", "timing")},
+            {
+                "dem": Path(snakemake.input.dem),
+                "metrics": Path(snakemake.input.metrics),
+                "timing": Path(snakemake.input.timing),
+            },
             Path(snakemake.params.benchmarks),
             Path(snakemake.output.provenance),
         )

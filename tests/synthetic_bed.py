@@ -9,6 +9,8 @@ import numpy as np
 
 COLUMNS = ["id", "x", "z", "vx", "vz"]
 STAMP = "a1b2c3"
+# scatter of the pressure drop about its mean, as a share of it
+SERIES_NOISE = 0.1
 
 
 def roll_velocity(x, z, width, height, speed):
@@ -74,7 +76,7 @@ def write_text_dump(path, step, table, box):
 
 
 def write_run(folder, frames, times, width, height, dem_step=2e-5, segment=0.5, form="binary", seed=2):
-    """A run's folder as run_dem leaves it: segments, frames, dem.json and bed_series.csv; path of dem.json."""
+    """A run as run_dem leaves it: frames in segments, and their manifest; path of dem.json."""
     rng = np.random.default_rng(seed)
     suffix = {"binary": "bin", "text": "txt"}[form]
     box = [(0, width), (-0.001, 0.001), (0, height)]
@@ -109,7 +111,7 @@ def write_series(folder, times, pressure_drop, mean_height, number):
     """bed_series.csv of a bed whose pressure drop swings about a mean; path of it."""
     names = "time_s,inlet_velocity_m_s,pressure_drop_Pa,mean_height_m,kinetic_energy_J,particles_1,"
     names += "smallest_voidage_1,voidage_clips_1,volume_balance_1,exchange_error_1"
-    swing = 1 + 0.1 * np.sin(2 * np.pi * 7 * times)
+    swing = np.random.default_rng(7).normal(1, SERIES_NOISE, len(times))
     rows = [
         f"{t:.6g},1.5,{pressure_drop * s:.8g},{mean_height:.6g},1e-3,{number},0.4,0,1e-15,1e-14"
         for t, s in zip(times, swing, strict=True)

@@ -9,6 +9,9 @@ import sys
 from pathlib import Path
 
 import pytest
+from snakemake.api import SnakemakeApi
+from snakemake.settings.enums import Quietness
+from snakemake.settings.types import OutputSettings, ResourceSettings
 
 sys.path.insert(0, str(Path(__file__).resolve().parents[1] / "scripts"))
 
@@ -225,28 +228,49 @@ def test_an_unknown_case_is_told_the_known_ones(finished):
     assert "there is no case 'shorter'" in done.stderr and "paper, short" in done.stderr
 
 
-def rule_inputs(folder: Path) -> dict[str, tuple[str, set[str]]]:
-    """Rule -> its script, and the library files among the inputs of its first job."""
-    done = snakemake(folder, "--dry-run", "--forceall")
-    found = {}
-    text = (folder / "Snakefile").read_text(encoding="utf-8")
-    scripts = dict(re.findall(r"^rule (\w+):(?:\n(?:    .*)?)*?\n    script:\n        \"(.+)\"", text, re.M))
-    for rule, inputs in re.findall(r"^rule (\w+):\n    input: (.*)$", done.stdout + done.stderr, re.M):
-        if rule in scripts:
-            library = {name for name in inputs.split(", ") if name.startswith("scripts/bedchain/")}
-            found[rule] = (scripts[rule], library)
-    return found
+@pytest.fixture(scope="module")
+def rules(finished):
+    """The rules of the Snakefile that run a script, by name."""
+    before = Path.cwd()
+    os.chdir(finished)
+    try:
+        with SnakemakeApi(OutputSettings(quiet={Quietness.ALL})) as api:
+            workflow = api.workflow(ResourceSettings(cores=2), snakefile=finished / "Snakefile")._workflow
+            return {rule.name: rule for rule in workflow.rules if rule.script}
+    finally:
+        os.chdir(before)
 
 
-def test_every_script_rule_names_the_modules_of_its_script(finished):
-    rules = rule_inputs(finished)
+def used_names(script: Path, kind: str) -> set[str]:
+    """Names that a script asks of ``snakemake.<kind>``."""
+    return set(re.findall(rf"\bsnakemake\.{kind}\.(\w+)", script.read_text(encoding="utf-8")))
+
+
+def test_every_script_has_the_name_of_its_rule(rules):
     assert set(rules) == ALL - {"build_solver", "write_parameters", "run_dem"}
-    for rule, (script, library) in rules.items():
-        assert script == f"scripts/{rule}.py"
-        imported = imported_modules(finished / script)
-        assert imported, f"{script} imports nothing of the library"
-        wanted = set(modules(*imported))
-        assert library == wanted, f"rule {rule} must name modules{tuple(imported)}: {library ^ wanted} differ"
+    for name, rule in rules.items():
+        assert rule.script == f"scripts/{name}.py"
+
+
+def test_every_rule_names_the_modules_that_its_script_imports(rules):
+    wrong = []
+    for name, rule in rules.items():
+        imported = imported_modules(ROOT / rule.script)
+        assert imported, f"{rule.script} imports nothing of the library"
+        given = {str(file) for file in rule.input if str(file).startswith("scripts/bedchain/")}
+        if given != set(modules(*imported)):
+            wrong.append(f"rule {name} must name modules{tuple(imported)}")
+    assert not wrong, "\n".join(wrong)
+
+
+@pytest.mark.parametrize("kind", ["input", "output", "params"])
+def test_rules_give_exactly_what_their_scripts_use(rules, kind):
+    wrong = []
+    for name, rule in rules.items():
+        given, used = set(getattr(rule, kind).keys()), used_names(ROOT / rule.script, kind)
+        if used != given:
+            wrong.append(f"rule {name}: {used - given or 'none'} missing, {given - used or 'none'} not used")
+    assert not wrong, "\n".join(wrong)
 
 
 def test_imports_are_followed_through_modules(tmp_path):

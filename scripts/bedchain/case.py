@@ -112,14 +112,15 @@ def _fill_derived_defaults(case: Case, schema: Schema) -> None:
 
 def _explain(error: ValidationError, schema: Schema, lines: Lines) -> list[Problem]:
     path = _dotted(error.absolute_path)
+    part: Any = error.schema
+    given: Any = error.instance
     if error.validator == "additionalProperties":
-        known = error.schema["properties"]
-        unknown = [name for name in error.instance if name not in known]
+        known = part["properties"]
+        unknown = [name for name in given if name not in known]
         return [_unknown(_join(path, name), name, known, schema, lines) for name in unknown]
     if error.validator == "required":
-        missing = [name for name in error.validator_value if name not in error.instance]
-        parts = error.schema["properties"]
-        return [_missing(_join(path, name), parts[name], lines.get(path)) for name in missing]
+        missing = [name for name in part["required"] if name not in given]
+        return [_missing(_join(path, name), part["properties"][name], lines.get(path)) for name in missing]
     wrong, remedy = _wrong_value(error)
     return [Problem(path or "(file)", wrong, remedy, lines.get(path.split("[")[0]))]
 
@@ -152,11 +153,11 @@ LIMITS = {
 
 
 def _wrong_value(error: ValidationError) -> tuple[str, str]:
-    limit = error.validator_value
+    part: Any = error.schema
+    limit: Any = error.validator_value
     limit = ", ".join(map(str, limit)) if isinstance(limit, list) else limit
     rule = LIMITS.get(str(error.validator), "").format(limit)
-    described = error.schema.get("description")
-    meaning = f" ({described})" if described else ""
+    meaning = f" ({part['description']})" if "description" in part else ""
     if not rule:
         return error.message, f"see the schema{meaning}"
     return f"{error.instance!r} is not {rule}", f"give a value {rule}{meaning}"

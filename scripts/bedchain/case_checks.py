@@ -198,6 +198,15 @@ def gas_cells_fit(cell: float, width: float, height: float, diameter: float) -> 
             yield "gas.cell_size_m", wrong, f"take {near:.6g}, or another bed.{name}"
 
 
+@reads("run.ranks", "gas.cell_size_m", "bed.width_m")
+def ranks_share_gas_evenly(ranks: int, cell: float, width: float) -> Iterator[Finding]:
+    """Refuse ranks that cannot have slabs of equally many gas cells."""
+    cells = ratio(width, cell)
+    if cells.denominator == 1 and cells % ranks:
+        wrong = f"{ranks} ranks cannot share {cells} gas cells along the width evenly"
+        yield "run.ranks", wrong, "take run.ranks: 1, or another gas.cell_size_m"
+
+
 @reads(
     "time.dem_step_s",
     "time.gas_step_s",

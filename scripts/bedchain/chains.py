@@ -12,6 +12,8 @@ from bedchain.frames import DataError
 
 # A row sum is a sum of at most a few hundred shares, each rounded once.
 ROW_SUM_TOLERANCE = 1e-12
+# Steps looked back over are kept in blocks of about this size.
+BLOCK_BYTES = 32 * 2**20
 
 
 def check_matrix(matrix: sparse.csr_array) -> None:
@@ -95,7 +97,7 @@ def propagate(
     wanted = np.arange(steps + 1) if isinstance(steps, int) else np.asarray(steps, dtype=np.int64)
     if wanted.size and (wanted[0] < 0 or (np.diff(wanted) < 0).any()):
         raise DataError(f"steps {list(wanted)} must rise from 0 or more")
-    now = np.ascontiguousarray(np.atleast_2d(np.asarray(start, dtype=np.float64)).T)
+    now = np.array(np.atleast_2d(start).T, dtype=np.float64, order="C")
     later = np.empty_like(now)
     totals = now.sum(axis=0)
     given = np.empty((wanted.size, now.shape[1], now.shape[0]))
@@ -151,12 +153,17 @@ def expected_values(
     check_matrix(matrix)
     totals = start.sum(axis=1)
     weights = np.divide(start, totals[:, None], out=np.full(start.shape, np.nan), where=totals[:, None] > 0)
-    means = np.empty((steps + 1, start.shape[0], values.shape[0]))
-    out = np.empty((steps + 1, matrix.shape[0], 2))
-    for o in range(0, values.shape[0], 2):
-        out[0] = values[[o, min(o + 1, values.shape[0] - 1)]].T
-        _look_back(matrix.indptr, matrix.indices, matrix.data, out)
-        means[:, :, o : o + 2] = (weights @ out)[:, :, : values.shape[0] - o]
+    n_obs = values.shape[0]
+    means = np.empty((steps + 1, start.shape[0], n_obs))
+    block = int(max(1, min(steps + 1, BLOCK_BYTES // (16 * matrix.shape[0]))))
+    for o in range(0, n_obs, 2):
+        out = np.empty((block + 1, matrix.shape[0], 2))
+        out[0] = values[[o, min(o + 1, n_obs - 1)]].T
+        for done in range(0, steps + 1, block):
+            part = out[: min(block, steps + 1 - done) + 1]
+            _look_back(matrix.indptr, matrix.indices, matrix.data, part)
+            means[done : done + block, :, o : o + 2] = (weights @ part[:-1])[:, :, : n_obs - o]
+            out[0] = part[-1]
     return means
 
 

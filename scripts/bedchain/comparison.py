@@ -107,7 +107,9 @@ def dem_metrics(on_side: np.ndarray, remaining: np.ndarray) -> list[Metric]:
     return rows
 
 
-def model_metrics(source: str, model: np.ndarray, dem: np.ndarray) -> list[Metric]:
+def model_metrics(
+    source: str, model: np.ndarray, dem: np.ndarray, replicates: np.ndarray | None = None
+) -> list[Metric]:
     """Errors of a chain's curves over the comparison window, and the share that crossed.
 
     Parameters
@@ -115,21 +117,51 @@ def model_metrics(source: str, model: np.ndarray, dem: np.ndarray) -> list[Metri
     source : str
     model, dem : (n_times, 4) ndarray
         Share of each group on its side, at the same times [1].
+    replicates : (n_replicates, n_times, 4) ndarray, optional
+        Curves of chains learned again on blocks of time; they give the 95 % bands.
 
     Returns
     -------
     list of dict
         error_signed (mean of model - DEM), error_rms, crossed_end, each by group.
     """
+    values = curve_errors(model, dem)
+    bands = (
+        {}
+        if replicates is None
+        else {name: band(found) for name, found in curve_errors(replicates, dem).items()}
+    )
     rows = []
     for column, (_, group) in enumerate(GROUPS):
-        error = (model - dem)[:, column]
-        rows += [
-            metric(f"error_signed_{group}", source, error.mean()),
-            metric(f"error_rms_{group}", source, np.sqrt((error**2).mean())),
-            metric(f"crossed_end_{group}", source, 1 - model[-1, column]),
-        ]
+        for name, value in values.items():
+            row = metric(f"{name}_{group}", source, value[column])
+            if name in bands:
+                low, high = bands[name]
+                row |= {"ci_low": float(low[column]), "ci_high": float(high[column])}
+            rows.append(row)
     return rows
+
+
+def curve_errors(model: np.ndarray, dem: np.ndarray) -> dict[str, np.ndarray]:
+    """Numbers that sum up how curves differ from the DEM's.
+
+    Parameters
+    ----------
+    model : (..., n_times, 4) ndarray
+        Share of each group on its side [1].
+    dem : (n_times, 4) ndarray
+
+    Returns
+    -------
+    dict of str to (..., 4) ndarray
+        error_signed, error_rms, crossed_end [1].
+    """
+    error = model - dem
+    return {
+        "error_signed": error.mean(axis=-2),
+        "error_rms": np.sqrt((error**2).mean(axis=-2)),
+        "crossed_end": 1 - model[..., -1, :],
+    }
 
 
 def batch_metrics(source: str, moments_s: np.ndarray, model: np.ndarray, dem: np.ndarray) -> list[Metric]:

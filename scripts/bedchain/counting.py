@@ -3,6 +3,7 @@
 
 from dataclasses import dataclass
 from functools import reduce
+from pathlib import Path
 
 import numpy as np
 from numpy.typing import NDArray
@@ -11,6 +12,7 @@ from scipy import sparse
 from bedchain import tally
 from bedchain.chunks import chunks
 from bedchain.frames import DataError, whole_steps
+from bedchain.storage import read_arrays, write_arrays
 
 
 @dataclass(frozen=True)
@@ -150,6 +152,37 @@ def merge(parts: list[Counts]) -> Counts:
     if not parts:
         raise DataError("no counts to merge")
     return reduce(_merge_two, parts)
+
+
+def write_counts(path: Path | str, counts: Counts) -> None:
+    """Write counts, so that jobs can count windows at the same time and another merge them."""
+    arrays = {"occupied": counts.occupied, "steps": np.array(counts.steps), "lag": np.array(counts.lag)}
+    arrays |= {"moves": counts.moves.data, "shares": counts.shares.data}
+    arrays |= {"indices": counts.moves.indices, "indptr": counts.moves.indptr}
+    arrays |= {"n_cells": np.array(counts.n_cells)}
+    write_arrays(path, arrays if counts.pairs is None else arrays | {"pairs": counts.pairs})
+
+
+def read_counts(path: Path | str) -> Counts:
+    """Counts written by `write_counts`.
+
+    Raises
+    ------
+    DataError
+        The file is missing, cut off, or holds no counts.
+    """
+    arrays = read_arrays(path)
+    try:
+        index = (arrays["indices"], arrays["indptr"])
+        shape = (arrays["indptr"].size - 1, int(arrays["n_cells"]))
+        moves, shares = (
+            sparse.csr_array((arrays[name], *index), shape=shape) for name in ("moves", "shares")
+        )
+        return Counts(
+            moves, shares, arrays["occupied"], int(arrays["steps"]), int(arrays["lag"]), arrays.get("pairs")
+        )
+    except KeyError as error:
+        raise DataError(f"{path} holds no counts, {error} is missing: count again") from error
 
 
 def _merge_two(one: Counts, two: Counts) -> Counts:

@@ -112,7 +112,7 @@ def implied_timescales(matrix: sparse.csr_array, lag_s: float, n: int = 5) -> ND
     size = np.abs(leading_eigenvalues(matrix, n + 1)[1:])
     inner = np.clip(size, np.finfo(float).tiny, 1.0)
     with np.errstate(divide="ignore"):
-        return np.asarray(-lag_s / np.log(inner))
+        return np.asarray(lag_s / np.abs(np.log(inner)))
 
 
 def mixing_time(matrix: sparse.csr_array, lag_s: float) -> float:

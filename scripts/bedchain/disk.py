@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Disk space that a simulation takes, asked for before it starts."""
 
+import math
 import shutil
 from pathlib import Path
 
@@ -12,14 +13,13 @@ DUMP_COLUMNS = 5  # id x z vx vz
 DOUBLE_BYTES = 8
 TRAJECTORY_BYTES = 4 * 4  # x z vx vz in single precision, the store made of the frames
 CELL_BYTES = 4  # an int32 for each particle and frame
-RESTART_BYTES_PARTICLE = 1500  # a LIGGGHTS restart, with the history of a particle's contacts
-RESTART_BYTES_GAS_CELL = 300  # text of the gas fields
-RESTARTS_KEPT = 3  # the last ones, and the one being written
+RESTART_BYTES_PARTICLE = 500  # measured 480: a LIGGGHTS restart, with the history of a particle's contacts
+RESTART_BYTES_GAS_CELL = 500  # measured 490: mesh and fields of a segment
 MARGIN = 1.1  # file system blocks, logs, figures
 
 
 def run_bytes(case: Case) -> int:
-    """Bytes that a case takes on disk: frames, the stores made of them, and restarts, with a margin.
+    """Bytes that a case takes on disk: frames, the stores made of them, and a restart of each segment.
 
     Parameters
     ----------
@@ -31,8 +31,9 @@ def run_bytes(case: Case) -> int:
     number = case["particles"]["number"]
     gas_cells = bed["width_m"] * bed["height_m"] / case["gas"]["cell_size_m"] ** 2
     frame_bytes = number * (DUMP_COLUMNS * DOUBLE_BYTES + TRAJECTORY_BYTES + CELL_BYTES)
+    segments = math.ceil(ratio(time["end_s"], time["segment_s"])) + 1
     restart_bytes = number * RESTART_BYTES_PARTICLE + gas_cells * RESTART_BYTES_GAS_CELL
-    return int(MARGIN * (frames * frame_bytes + RESTARTS_KEPT * restart_bytes))
+    return int(MARGIN * (frames * frame_bytes + segments * restart_bytes))
 
 
 def require_disk(folder: Path, needed: int, done: int = 0) -> None:

@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 from scipy import sparse
 
 from bedchain.counting import Counts, count_moves, count_pairs
-from bedchain.estimators import estimated_rows, leak, traps, transition_matrix
+from bedchain.estimators import estimated_rows, leak, transition_matrix, traps
 from bedchain.frames import Frames
 from bedchain.grid import Grid
 from bedchain.markov_chain import MarkovChain

@@ -173,7 +173,7 @@ def closed_classes(matrix: sparse.csr_array) -> list[NDArray[np.int64]]:
 
 
 def traps(matrix: sparse.csr_array, visits: NDArray[np.int64]) -> NDArray[np.int64]:
-    """Number of the closed class of each state that lies in one other than the main class, (n_states,); else -1.
+    """Number of the closed class of each state that is in another than the main one, else -1; (n_states,).
 
     The main class is the communicating class with the most visits, closed or not.
     """
@@ -185,10 +185,10 @@ def traps(matrix: sparse.csr_array, visits: NDArray[np.int64]) -> NDArray[np.int
 def open_classes(matrix: sparse.csr_array, counts: Counts) -> tuple[sparse.csr_array, NDArray[np.int64]]:
     """Open classes that the frames happen to leave closed, such as a cell entered only in the last frame.
 
-    From every closed class other than the main one (`traps`) that particles were seen to enter they return as they
-    came: the moves in, reversed, are added to the counts of its rows. Without this a particle that enters such a
-    class never comes back, and the chain's long-run density collapses onto it. A class that nothing entered (never
-    visited, or apart from the start) is left as it is.
+    From every closed class other than the main one (`traps`) that particles were seen to enter they return
+    as they came: the moves in, reversed, are added to the counts of its rows. Without this a particle that
+    enters such a class never comes back, and the chain's long-run density collapses onto it. A class that
+    nothing entered (never visited, or apart from the start) is left as it is.
 
     Returns
     -------
@@ -212,9 +212,7 @@ def open_classes(matrix: sparse.csr_array, counts: Counts) -> tuple[sparse.csr_a
         returning = np.asarray(back.sum(axis=1)).ravel()
         total = np.where(returning > 0, weight + returning, 1.0)
         kept = np.where(returning > 0, weight / total, 1.0)
-        matrix = sparse.csr_array(
-            sparse.diags_array(kept) @ matrix + sparse.diags_array(1.0 / total) @ back
-        )
+        matrix = sparse.csr_array(sparse.diags_array(kept) @ matrix + sparse.diags_array(1.0 / total) @ back)
         matrix.eliminate_zeros()
         weight += returning
         changed |= returning > 0

@@ -76,9 +76,7 @@ def save_figure(figure: Figure, png: Path, pdf: Path, resolution_dpi: int) -> No
 
 def map_colours(name: str) -> Colormap:
     """Colour map whose lowest end, nothing there, is the white of the page."""
-    colours = plt.get_cmap(name).copy()
-    colours.set_bad(EMPTY_COLOUR)
-    return colours
+    return plt.get_cmap(name).with_extremes(bad=EMPTY_COLOUR)
 
 
 def draw_cells(axes: Axes, values: np.ndarray, grid: Grid, norm: Normalize, colours: Colormap) -> QuadMesh:

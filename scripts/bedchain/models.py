@@ -91,6 +91,9 @@ READERS: dict[str, Callable[[dict[str, NDArray[Any]]], Chain]] = {
     "dynamic": MarkovChain.from_arrays,
 }
 
+# Optional: for models that learn faster from other weights of the same steps.
+RELEARNERS: dict[str, Callable[..., Callable[[NDArray[np.int64]], Chain]]] = {"static": static.relearner}
+
 
 def learn(
     name: str,
@@ -132,6 +135,23 @@ def learn(
     if name not in LEARNERS:
         raise DataError(f"model {name!r} is unknown: choose from {', '.join(LEARNERS)}")
     return LEARNERS[name](frames, grid, lag=lag, estimator=estimator, step_weights=step_weights, **options)
+
+
+def relearner(
+    name: str, frames: Frames, grid: Grid, lag: int = 1, estimator: str = "pooled", **options: Any
+) -> Callable[[NDArray[np.int64]], Chain]:
+    """`learn` as a function of ``step_weights``, for `bootstrap.block_chains` of one window.
+
+    Parameters are those of `learn`. A model in `RELEARNERS` counts once for all replicates.
+
+    Returns
+    -------
+    callable
+        From (n_frames - lag,) int weights to a `Chain`.
+    """
+    if name in RELEARNERS:
+        return RELEARNERS[name](frames, grid, lag=lag, estimator=estimator, **options)
+    return lambda weights: learn(name, frames, grid, lag, estimator, weights, **options)
 
 
 def save(chain: Chain, path: Path | str) -> None:

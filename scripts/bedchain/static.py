@@ -1,6 +1,8 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """The static chain: where a particle goes depends on its cell alone (Zhuang et al. 2015, Eq. 1)."""
 
+from collections.abc import Callable
+
 import numpy as np
 from numpy.typing import NDArray
 from scipy import sparse
@@ -18,6 +20,7 @@ from bedchain.estimators import (
 from bedchain.frames import Frames
 from bedchain.grid import Grid
 from bedchain.markov_chain import MarkovChain
+from bedchain.stepwise import count_steps
 
 
 def learn(
@@ -30,6 +33,15 @@ def learn(
     """Static chain from a window of frames; arguments as `models.learn`."""
     counts = count_moves(frames.cells, grid.n_cells, lag, step_weights=step_weights)
     return from_counts(counts, grid, lag * frames.interval_s, estimator)
+
+
+def relearner(
+    frames: Frames, grid: Grid, lag: int = 1, estimator: str = "pooled"
+) -> Callable[[NDArray[np.int64]], MarkovChain]:
+    """`learn` as a function of ``step_weights`` that has counted already; arguments as `models.relearner`."""
+    steps = count_steps(frames.cells, grid.n_cells, lag)
+    lag_s = lag * frames.interval_s
+    return lambda weights: from_counts(steps.weighted(weights), grid, lag_s, estimator)
 
 
 def from_counts(counts: Counts, grid: Grid, lag_s: float, estimator: str = "pooled") -> MarkovChain:

@@ -5,22 +5,32 @@ from types import SimpleNamespace
 
 import numpy as np
 import pytest
+from small_bed import (
+    BATCH,
+    COLUMNS,
+    COMPARE,
+    DIAMETER,
+    FILLED,
+    HEIGHT,
+    LEARN,
+    LEARNING,
+    MODELS,
+    MOMENTS,
+    NUMBER,
+    ROWS,
+    SPLIT_X,
+    SPLIT_Z,
+    TIMES,
+    WEIGHT_PA,
+    WIDTH,
+)
+from synthetic_bed import rolling_bed, write_run, write_series
+
 from assign_cells import assign_cells
 from build_transitions import build_transitions
 from compare_mixing import compare_mixing
 from parse_dumps import parse_dumps
 from run_chain import run_chain
-from synthetic_bed import rolling_bed, write_run, write_series
-
-WIDTH, HEIGHT, FILLED = 0.08, 0.20, 0.12
-NUMBER, DIAMETER = 1500, 1e-3
-COLUMNS, ROWS = 8, 20
-TIMES = np.round(np.arange(0, 3 + 1e-9, 0.025), 6)
-LEARN, COMPARE = (0.5, 2.0), (2.0, 3.0)
-SPLIT_X, SPLIT_Z, BATCH = 0.04, 0.06, 0.02
-MOMENTS = [0.05, 0.30, 0.55]
-WEIGHT_PA = 800.0
-MODELS = ("static", "dynamic")
 
 
 @pytest.fixture(scope="session")
@@ -49,7 +59,7 @@ def bed(tmp_path_factory, frames):
         build_transitions(*paths.frames, paths.transitions[model], model, "pooled", 0.025, *LEARN)
         run_chain(
             *paths.frames, paths.transitions[model], paths.chains[model],
-            *COMPARE, SPLIT_X, SPLIT_Z, BATCH, MOMENTS, seed=3,
+            LEARNING, "pooled", *COMPARE, SPLIT_X, SPLIT_Z, BATCH, MOMENTS, seed=3,
         )  # fmt: skip
     compare_mixing(
         *paths.frames, paths.chains, paths.series, paths.mixing, paths.metrics,

@@ -5,10 +5,10 @@ import json
 
 import numpy as np
 import pytest
-from parse_dumps import parse_dumps
 from synthetic_bed import rolling_bed, write_run
 
 from bedchain.errors import UserError
+from parse_dumps import parse_dumps
 
 WIDTH, HEIGHT = 0.08, 0.20
 TIMES = np.round(np.arange(0, 1 + 1e-9, 0.025), 6)

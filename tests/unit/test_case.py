@@ -204,6 +204,7 @@ MISTAKES = [
         "does not divide",
     ),
     ("split_z_m: 0.081", "split_z_m: 0.081\ngas:\n  drag_law: stokes", "gas.drag_law", "gidaspow"),
+    ("split_z_m: 0.081", "split_z_m: 0.081\ngas:\n  cell_size_m: 0.01", "run.ranks", "take run.ranks: 1"),
     ("batch_height_m: 0.027", "moments_s: [0.05, 2.05]", "figures.moments_s", "after the end"),
     ("batch_height_m: 0.027", "dem_colour: '12'", "figures.dem_colour", "Matplotlib"),
 ]

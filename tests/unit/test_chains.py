@@ -61,6 +61,15 @@ def test_forward_and_backward_agree_with_dense_powers():
         assert (picked == forward[[3, 3, 11]]).all()
 
 
+def test_blocks_of_steps_change_nothing(monkeypatch):
+    rng = np.random.default_rng(8)
+    matrix, start, values = random_matrix(9), rng.random((2, 30)), rng.random((3, 30))
+    whole = chains.expected_values(matrix, start, values, 25)
+    for steps_a_block in (1, 4, 26, 40):
+        monkeypatch.setattr(chains, "BLOCK_BYTES", 16 * 30 * steps_a_block)
+        assert np.allclose(chains.expected_values(matrix, start, values, 25), whole, rtol=0, atol=ROUND_OFF)
+
+
 def test_a_million_steps_conserve_probability():
     start = np.random.default_rng(1).random((2, 30))
     for matrix in (random_matrix(4), ring(30, 0.3)):
@@ -90,14 +99,20 @@ def test_paths_agree_with_a_plain_search_and_repeat_by_seed():
     cdf = chains.cumulative_rows(matrix)
     start = np.random.default_rng(2).integers(0, 30, 400)
     paths = chains.simulate(matrix, start, 20, np.random.default_rng(7))
-    assert paths.dtype == np.int32 and (paths == chains.simulate(matrix, start, 20, np.random.default_rng(7))).all()
+    assert (
+        paths.dtype == np.int32
+        and (paths == chains.simulate(matrix, start, 20, np.random.default_rng(7))).all()
+    )
     assert (paths != chains.simulate(matrix, start, 20, np.random.default_rng(8))).any()
     rng = np.random.default_rng(7)
     now = start
     for step in range(20):
         draws = rng.random(400)
         rows = [slice(matrix.indptr[i], matrix.indptr[i + 1]) for i in now]
-        now = [matrix.indices[r][np.searchsorted(cdf[r], u, side="right")] for r, u in zip(rows, draws, strict=True)]
+        now = [
+            matrix.indices[r][np.searchsorted(cdf[r], u, side="right")]
+            for r, u in zip(rows, draws, strict=True)
+        ]
         assert paths[step + 1].tolist() == [int(i) for i in now]
 
 

@@ -6,7 +6,7 @@ import pytest
 from deeptime.markov import TransitionCountEstimator
 
 from bedchain import chunks
-from bedchain.counting import Counts, count_moves, count_pairs, merge
+from bedchain.counting import Counts, count_moves, count_pairs, merge, read_counts, write_counts
 from bedchain.frames import DataError
 from bedchain.storage import map_array
 
@@ -47,7 +47,9 @@ def assert_equals_naive(found: Counts, expected: tuple[Counter, dict, Counter]) 
     assert dict(zip(paths, moves.data.tolist(), strict=True)) == dict(counts)
     for path, value in zip(paths, share.data, strict=True):
         assert value == pytest.approx(shares[path], abs=ROUND_OFF)
-    assert {tuple(pair): n for pair, n in zip(pairs, found.occupied.tolist(), strict=True) if n} == dict(occupied)
+    assert {tuple(pair): n for pair, n in zip(pairs, found.occupied.tolist(), strict=True) if n} == dict(
+        occupied
+    )
 
 
 def test_one_particle_at_lag_two():
@@ -85,7 +87,9 @@ def test_agrees_with_plain_loops(lag, moves):
 def test_agrees_with_deeptime():
     cells = random_cells(4)
     for lag in (1, 3):
-        model = TransitionCountEstimator(lag, "sliding", n_states=12).fit_fetch([np.ascontiguousarray(p) for p in cells.T])
+        model = TransitionCountEstimator(lag, "sliding", n_states=12).fit_fetch(
+            [np.ascontiguousarray(p) for p in cells.T]
+        )
         assert (model.count_matrix == count_moves(cells, 12, lag).moves.toarray()).all()
 
 
@@ -94,7 +98,9 @@ def test_merged_counts_of_seven_windows_equal_those_of_one(count):
     cells = random_cells(5, n_frames=60)
     whole = count(cells, 12, 2)
     edges = [0, 5, 6, 20, 31, 40, 52, 60]
-    merged = merge([count(cells, 12, 2, first=low, last=high) for low, high in zip(edges, edges[1:], strict=False)])
+    merged = merge(
+        [count(cells, 12, 2, first=low, last=high) for low, high in zip(edges, edges[1:], strict=False)]
+    )
     assert (merged.moves != whole.moves).nnz == 0
     assert abs(merged.shares - whole.shares).max() < ROUND_OFF
     assert (merged.occupied == whole.occupied).all() and merged.steps == whole.steps
@@ -102,15 +108,35 @@ def test_merged_counts_of_seven_windows_equal_those_of_one(count):
         assert (merged.pairs == whole.pairs).all()
 
 
+@pytest.mark.parametrize("count", [count_moves, count_pairs])
+def test_counts_of_parallel_jobs_come_back_from_files(count, tmp_path):
+    cells = random_cells(11)
+    for job, (low, high) in enumerate([(0, 9), (9, 30)]):
+        write_counts(tmp_path / f"{job}.npz", count(cells, 12, first=low, last=high))
+    merged = merge([read_counts(tmp_path / f"{job}.npz") for job in (0, 1)])
+    assert_equals_naive(merged, naive(cells, 1, 1 if count is count_moves else 2))
+    np.savez(tmp_path / "other.npz", moves=np.ones(3))
+    with pytest.raises(DataError, match="holds no counts, 'indices' is missing"):
+        read_counts(tmp_path / "other.npz")
+
+
 def test_chunks_change_nothing(monkeypatch, tmp_path):
     cells = random_cells(6)
     np.savez(tmp_path / "cells.npz", other=np.arange(3.0), cells=cells)
-    whole = [count_moves(cells, 12, 3), count_pairs(cells, 12, 3), count_moves(cells[:28], 12, 3, sliding=False)]
+    whole = [
+        count_moves(cells, 12, 3),
+        count_pairs(cells, 12, 3),
+        count_moves(cells[:28], 12, 3, sliding=False),
+    ]
     monkeypatch.setattr(chunks, "CHUNK_BYTES", 4 * cells[0].nbytes)
     mapped = map_array(tmp_path / "cells.npz", "cells")
     assert isinstance(mapped, np.memmap)
     for array in (cells, mapped, mapped[:]):
-        parts = [count_moves(array, 12, 3), count_pairs(array, 12, 3), count_moves(array[:28], 12, 3, sliding=False)]
+        parts = [
+            count_moves(array, 12, 3),
+            count_pairs(array, 12, 3),
+            count_moves(array[:28], 12, 3, sliding=False),
+        ]
         for one, two in zip(whole, parts, strict=True):
             assert (one.moves != two.moves).nnz == 0 and (one.occupied == two.occupied).all()
             assert (one.shares != two.shares).nnz == 0

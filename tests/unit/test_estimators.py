@@ -34,7 +34,9 @@ def test_per_step_and_pooled_differ_where_occupancy_and_motion_are_linked():
     counts = uneven_cell()
     assert transition_matrix(counts, "per_step")[0, 1] == pytest.approx(0.5, abs=ROUND_OFF)
     assert transition_matrix(counts, "literal")[0, 1] == pytest.approx(0.5, abs=ROUND_OFF)
-    assert transition_matrix(counts, "pooled")[0, 1] == pytest.approx((0.9 * 1 + 0.1 * 20) / 21, abs=ROUND_OFF)
+    assert transition_matrix(counts, "pooled")[0, 1] == pytest.approx(
+        (0.9 * 1 + 0.1 * 20) / 21, abs=ROUND_OFF
+    )
     assert transition_matrix(counts, "pooled")[0, 1] == pytest.approx(0.138, abs=5e-4)
 
 
@@ -42,7 +44,11 @@ def test_literal_leaks_what_it_says_and_the_rest_stays_put():
     # Cell 1 is occupied in one of two steps, cell 0 in both; nothing is ever in cell 2.
     counts = count_moves(paths([0, 1, 0], [0, 0, 0]), 3)
     assert ESTIMATORS["literal"](counts).toarray().tolist() == [[0.75, 0.25, 0], [0.5, 0, 0], [0, 0, 0]]
-    assert transition_matrix(counts, "literal").toarray().tolist() == [[0.75, 0.25, 0], [0.5, 0.5, 0], [0, 0, 1]]
+    assert transition_matrix(counts, "literal").toarray().tolist() == [
+        [0.75, 0.25, 0],
+        [0.5, 0.5, 0],
+        [0, 0, 1],
+    ]
     assert leak(counts) == pytest.approx(0.25 * 0.5)
     assert leak(counts, np.array([0.0, 0.0, 1.0])) == 1.0
     assert transition_matrix(counts, "per_step")[1, 0] == 1.0
@@ -73,7 +79,9 @@ def test_agrees_with_naive_loops():
     assert np.allclose(transition_matrix(counts, "per_step").toarray(), sums / steps[:, None], atol=ROUND_OFF)
     printed = sums / 19
     assert np.allclose(
-        transition_matrix(counts, "literal").toarray(), printed + np.diag(1 - printed.sum(axis=1)), atol=ROUND_OFF
+        transition_matrix(counts, "literal").toarray(),
+        printed + np.diag(1 - printed.sum(axis=1)),
+        atol=ROUND_OFF,
     )
 
 
@@ -100,7 +108,9 @@ def test_a_cell_entered_only_in_the_last_frame_sends_back_what_came():
     counts = count_moves(paths([0, 0, 1, 0, 2], [0, 1, 0, 1, 2], [0, 0, 0, 0, 2]), 3)
     matrix, openings = transition_matrix_with_openings(counts)
     assert matrix.toarray()[2].tolist() == pytest.approx([2 / 3, 1 / 3, 0])
-    assert openings.returned.tolist() == [2] and openings.never_left.size == 0 and openings.closed_classes == 1
+    assert (
+        openings.returned.tolist() == [2] and openings.never_left.size == 0 and openings.closed_classes == 1
+    )
     kept, untouched = transition_matrix_with_openings(counts, "pooled", open_closed=False)
     assert kept.toarray()[2].tolist() == [0, 0, 1] and untouched.never_left.tolist() == [2]
     assert transition_matrix(counts, "literal").toarray()[2].tolist() == [0, 0, 1]
@@ -115,7 +125,9 @@ def test_a_closed_class_of_several_cells_is_opened_in_proportion_to_its_counts()
     assert matrix.toarray()[2].tolist() == pytest.approx([0.25, 0, 0, 0.75])
     assert openings.returned.tolist() == [2] and openings.closed_classes == 1
     assert len(closed_classes(transition_matrix(counts, "pooled", open_closed=False))[0]) == 2
-    trapped = long_run_density(transition_matrix(counts, "pooled", open_closed=False), np.array([1.0, 0, 0, 0]))
+    trapped = long_run_density(
+        transition_matrix(counts, "pooled", open_closed=False), np.array([1.0, 0, 0, 0])
+    )
     free = long_run_density(matrix, np.array([1.0, 0, 0, 0]))
     assert trapped[:2].sum() == 0 and free[:2].sum() > 0.5
 

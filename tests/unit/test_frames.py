@@ -14,7 +14,12 @@ def test_window_holds_both_ends():
 
 @pytest.mark.parametrize(
     ("start", "end", "message"),
-    [(5.0, 5.0, "empty"), (6.0, 5.0, "empty"), (5.01, 6.0, "start, 5.01 s, is not the time"), (9.0, 10.5, "end, 10.5 s")],
+    [
+        (5.0, 5.0, "empty"),
+        (6.0, 5.0, "empty"),
+        (5.01, 6.0, "start, 5.01 s, is not the time"),
+        (9.0, 10.5, "end, 10.5 s"),
+    ],
 )
 def test_bad_windows_are_refused(start, end, message):
     with pytest.raises(DataError, match=message):
@@ -41,7 +46,9 @@ def test_lag_must_fit_the_frames_and_the_window():
     with pytest.raises(DataError, match="not a multiple of the frame interval"):
         lag_frames(0.03, 0.025)
     assert whole_steps(201, 8) == 25
-    with pytest.raises(DataError, match=r"lag of 7 frames does not divide the window of 200 .*4 intervals earlier"):
+    with pytest.raises(
+        DataError, match=r"lag of 7 frames does not divide the window of 200 .*4 intervals earlier"
+    ):
         whole_steps(201, 7)
     with pytest.raises(DataError, match="holds no step"):
         whole_steps(4, 4)

@@ -35,7 +35,9 @@ def test_agrees_with_a_loop_over_random_positions(dtype):
 
 
 def test_the_wall_itself_as_float32_is_inside():
-    assert PAPER.cell_of(np.array([0.27], np.float32), np.array([1.05], np.float32)).tolist() == [27 * 105 - 1]
+    assert PAPER.cell_of(np.array([0.27], np.float32), np.array([1.05], np.float32)).tolist() == [
+        27 * 105 - 1
+    ]
 
 
 def test_a_position_outside_names_particle_frame_and_distance():
@@ -59,7 +61,9 @@ def test_from_one_cell_to_one_a_diameter():
         Grid(0.27, 1.05, 271, 1050).check_resolution(1e-3)
 
 
-@pytest.mark.parametrize("sizes", [(0.0, 1.0, 1, 1), (1.0, float("nan"), 1, 1), (1.0, 1.0, 0, 1), (1, 1, 10**5, 10**5)])
+@pytest.mark.parametrize(
+    "sizes", [(0.0, 1.0, 1, 1), (1.0, float("nan"), 1, 1), (1.0, 1.0, 0, 1), (1, 1, 10**5, 10**5)]
+)
 def test_impossible_grids_are_refused(sizes):
     with pytest.raises(DataError):
         Grid(*sizes)

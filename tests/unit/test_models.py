@@ -1,131 +1,16 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 import numpy as np
 import pytest
+from made_frames import stirred
 
-from bedchain import dynamic, models
-from bedchain.counting import Counts, count_moves, count_pairs, merge
+from bedchain import models
 from bedchain.estimators import ESTIMATORS
 from bedchain.frames import DataError, Frames
 from bedchain.grid import Grid
-from bedchain.mixing import sides
+from bedchain.mixing import marked_histogram, sides
 
-ROUND_OFF = 1e-12
+# Monte Carlo against the exact mean, in standard errors; about 1 in 15 000 exceeds it by chance.
 SIGMAS = 4.0
-# Mean-square displacement of the persistent walk (rho = 0.8) after 50 steps, in cells squared.
-PERSISTENT_MSD = 410.00057
-
-
-def framed(cells: np.ndarray, grid: Grid) -> Frames:
-    """Frames of particles in the middles of their cells."""
-    x, z = np.moveaxis(grid.centres_m[cells], -1, 0)
-    return Frames(np.arange(len(cells)) * 0.025, x, z, cells.astype(np.int32))
-
-
-def stirred(seed: int = 0, n_frames: int = 60, n_particles: int = 400) -> tuple[Frames, Grid]:
-    """Particles with a memory of their direction on a small bed."""
-    rng = np.random.default_rng(seed)
-    grid = Grid(0.05, 0.08, 5, 8)
-    x, z = rng.random((2, n_particles)) * [[0.05], [0.08]]
-    vx, vz = rng.normal(0, 0.004, (2, n_particles))
-    frames = []
-    for _ in range(n_frames):
-        frames.append((x, z))
-        vx, vz = 0.8 * vx + rng.normal(0, 0.003, n_particles), 0.8 * vz + rng.normal(0, 0.003, n_particles)
-        x, z = np.clip(x + vx, 0, 0.05), np.clip(z + vz, 0, 0.08)
-    x, z = np.moveaxis(np.array(frames), 1, 0)
-    return Frames(np.arange(n_frames) * 0.025, x, z, grid.cell_of(x, z)), grid
-
-
-def persistent_walk(n_cells: int, n_particles: int, n_frames: int, rng: np.random.Generator) -> np.ndarray:
-    place = rng.integers(0, n_cells, n_particles)
-    direction = rng.choice([-1, 1], n_particles)
-    cells = np.empty((n_frames, n_particles), np.int32)
-    for frame in range(n_frames):
-        cells[frame] = place
-        turned = (rng.random(n_particles) < 0.1) | (place + direction < 0) | (place + direction >= n_cells)
-        direction = np.where(turned, -direction, direction)
-        place = np.clip(place + direction, 0, n_cells - 1)
-    return cells
-
-
-def mean_square(chain: models.Chain, start: Frames, middle: int, steps: int) -> float:
-    marked = np.ones((1, start.cells.shape[1]), bool)
-    density = chain.densities(start, marked, [steps])[0, 0]
-    return float(density @ (np.arange(density.size) - middle) ** 2 / density.sum())
-
-
-def test_the_dynamic_chain_recovers_the_persistent_walk_exactly():
-    # Every pair of neighbours, seen ten times: nine go on, one turns back.
-    paths = [[i, i + d, i + 2 * d] for i in range(2, 119) for d in (-1, 1) for _ in range(9)]
-    paths += [[i, i + d, i] for i in range(2, 119) for d in (-1, 1)]
-    cells = np.array(paths, np.int32).T
-    grid = Grid(1.21, 0.01, 121, 1)
-    start = framed(np.array([[59, 61], [60, 60]]), grid)
-    chain = models.learn("dynamic", framed(cells, grid), grid)
-    assert mean_square(chain, start, 60, 50) == pytest.approx(PERSISTENT_MSD, abs=1e-5)
-    first_order = models.learn("static", framed(cells, grid), grid)
-    assert mean_square(first_order, start, 60, 50) == pytest.approx(50, abs=1e-9)
-
-
-def test_the_dynamic_chain_recovers_the_persistent_walk_from_frames():
-    rng = np.random.default_rng(12)
-    grid = Grid(2.01, 0.01, 201, 1)
-    frames = framed(persistent_walk(201, 20_000, 100, rng), grid)
-    start = framed(np.array([[99, 101], [100, 100]]), grid)
-    expected = {"dynamic": (PERSISTENT_MSD, 0.03), "static": (50.0, 0.03)}
-    for name, (displacement, tolerance) in expected.items():
-        found = mean_square(models.learn(name, frames, grid), start, 100, 50)
-        assert found == pytest.approx(displacement, rel=tolerance), name
-
-
-@pytest.mark.parametrize("estimator", list(ESTIMATORS))
-def test_a_constant_process_gives_static_equal_to_dynamic(estimator):
-    grid = Grid(0.04, 0.03, 4, 3)
-    rng = np.random.default_rng(1)
-    still = np.tile(rng.integers(0, 12, 50), (20, 1))
-    shift = (rng.integers(0, 12, 50) + np.arange(21)[:, None] * 5) % 12
-    for cells in (still, shift):
-        frames = framed(cells, grid)
-        if estimator == "literal":
-            # All cells hold particles all the time, or they leak at different rates.
-            frames = framed(np.concatenate([cells, (np.arange(12) + cells[:, :1] - cells[0, 0]) % 12], axis=1), grid)
-        start = frames.part(slice(0, 2))
-        curves = [models.learn(name, frames, grid, 1, estimator).mixing(start, 0.02, 0.01, 15) for name in models.LEARNERS]
-        assert np.allclose(curves[0], curves[1], rtol=0, atol=ROUND_OFF, equal_nan=True)
-
-
-def test_pairs_seen_once_follow_what_they_did():
-    grid = Grid(0.03, 0.01, 3, 1)
-    cells = np.array([[0, 1, 2, 1, 0, 1, 2, 1, 0]]).T
-    chain = models.learn("dynamic", framed(cells, grid), grid)
-    assert [int(c[0]) for c in chain.paths(framed(cells[:2], grid), 6, np.random.default_rng(1))] == [1, 2, 1, 0, 1, 2, 1]
-
-
-def test_an_unknown_pair_falls_back_on_the_static_row():
-    grid = Grid(0.04, 0.01, 4, 1)
-    cells = np.array([[0, 1, 2, 1, 0, 1, 2, 1, 0], [2, 1, 0, 1, 2, 1, 0, 1, 2]]).T
-    learned = framed(cells, grid)
-    static, chain = (models.learn(name, learned, grid) for name in ("static", "dynamic"))
-    marked = np.ones((1, 1), bool)
-    for before in (1, 3):  # never (1, 1) nor (3, 1)
-        start = framed(np.array([[before], [1]]), grid)
-        one = [model.densities(start, marked, [1])[0, 0].tolist() for model in (static, chain)]
-        assert one[0] == one[1] == [0.5, 0, 0.5, 0]
-    never = framed(np.array([[3], [3]]), grid)
-    assert chain.densities(never, marked, [9])[0, 0].tolist() == [0, 0, 0, 1.0]
-
-
-def test_dynamic_matrix_agrees_with_a_loop_over_pairs():
-    frames, grid = stirred(3)
-    chain = models.learn("dynamic", frames, grid)
-    start = frames.part(slice(10, 12))
-    path = frames.cells
-    expected = np.zeros(grid.n_cells)
-    for p in range(path.shape[1]):
-        same = (path[:-2] == path[10, p]) & (path[1:-1] == path[11, p])
-        expected += np.bincount(path[2:][same], minlength=grid.n_cells) / same.sum()
-    found = chain.densities(start, np.ones((1, path.shape[1]), bool), [1])[0, 0]
-    assert np.allclose(found, expected, atol=1e-9)
 
 
 @pytest.mark.parametrize("name", list(models.LEARNERS))
@@ -179,7 +64,12 @@ def test_files_give_back_the_same_chain(name, tmp_path):
     again = models.load(tmp_path / "chain.npz")
     for key, array in chain.arrays().items():
         assert array.dtype == again.arrays()[key].dtype and (array == again.arrays()[key]).all(), key
-    assert (again.name, again.grid, again.lag_s, again.report) == (chain.name, chain.grid, chain.lag_s, chain.report)
+    assert (again.name, again.grid, again.lag_s, again.report) == (
+        chain.name,
+        chain.grid,
+        chain.lag_s,
+        chain.report,
+    )
     assert [file.name for file in tmp_path.iterdir()] == ["chain.npz"]
     first, second = tmp_path / "chain.npz", tmp_path / "again.npz"
     models.save(again, second)
@@ -223,24 +113,73 @@ def test_windows_and_starts_too_short_are_refused():
         chain.mixing(frames.part(slice(0, 2)), 0.02, 0.05, 3)
 
 
-def test_merged_parts_make_the_same_dynamic_chain():
-    frames, grid = stirred(9)
-    cells = frames.cells
-
-    def parts(count) -> Counts:
-        return merge([count(cells, grid.n_cells, first=low, last=low + 10) for low in range(0, 60, 10)][:6])
-
-    whole = models.learn("dynamic", frames, grid)
-    joined = dynamic.from_counts(parts(count_pairs), parts(count_moves), grid, 0.025)
-    for key, array in whole.arrays().items():
-        assert (array == joined.arrays()[key]).all(), key
+@pytest.mark.parametrize("name", list(models.LEARNERS))
+def test_one_cell_and_one_cell_a_diameter(name):
+    frames, _ = stirred(10)
+    for grid in (Grid(0.05, 0.08, 1, 1), Grid(0.05, 0.08, 50, 80)):
+        grid.check_resolution(0.001)
+        seen = Frames(frames.times_s, frames.x_m, frames.z_m, grid.cell_of(frames.x_m, frames.z_m))
+        chain = models.learn(name, seen, grid)
+        curves = chain.mixing(seen.part(slice(0, 3)), 0.025, 0.04, 5)
+        assert curves.shape == (6, 4) and ((curves >= 0) & (curves <= 1)).all()
 
 
-def test_a_pair_entered_only_at_the_end_moves_on_as_its_cell_does():
-    grid = Grid(0.03, 0.01, 3, 1)
-    to_and_fro = [[0, 1] * 4] * 6
-    cells = np.array([*to_and_fro, [0, 1, 0, 1, 0, 2, 2, 2]]).T
-    chain = models.learn("dynamic", framed(cells, grid), grid)
-    assert chain.report["pairs_opened_1"] == 1
-    density = chain.long_run_density(framed(cells[:2], grid))
-    assert density[2] < 0.2 and density.sum() == pytest.approx(1)
+@pytest.mark.parametrize("name", list(models.LEARNERS))
+@pytest.mark.parametrize("estimator", list(ESTIMATORS))
+def test_learning_again_with_other_weights_is_learning_with_them(name, estimator):
+    frames, grid = stirred(12, n_frames=30)
+    again = models.relearner(name, frames, grid, 2, estimator)
+    for seed in range(3):
+        weights = np.random.default_rng(seed).integers(0, 3, 28)
+        one, two = again(weights), models.learn(name, frames, grid, 2, estimator, weights)
+        assert one.lag_s == two.lag_s and one.report == pytest.approx(two.report, abs=1e-12)
+        for key in ("indices", "indptr", "cell_of_state", "state_keys"):
+            assert (one.arrays()[key] == two.arrays()[key]).all()
+        assert np.allclose(one.arrays()["data"], two.arrays()["data"], rtol=0, atol=1e-12)
+
+
+class Still:
+    """A path model that keeps positions and not only cells: particles never move."""
+
+    def __init__(self, grid: Grid, lag_s: float) -> None:
+        self.name, self.grid, self.lag_s, self.report = "still", grid, lag_s, {"tracers_1": 1.0}
+
+    def mixing(self, start, split_x_m, split_z_m, steps, rng=None):
+        marked = sides(start.x_m[-1], start.z_m[-1], split_x_m, split_z_m)
+        return np.where(marked.any(axis=1), 1.0, np.nan) * np.ones((steps + 1, 1))
+
+    def densities(self, start, marked, steps, rng=None):
+        return np.stack([marked_histogram(start.cells[-1], marked, self.grid.n_cells) for _ in steps])
+
+    def paths(self, start, steps, rng):
+        return iter([start.cells[-1]] * (steps + 1))
+
+    def long_run_density(self, start):
+        return np.bincount(start.cells[-1], minlength=self.grid.n_cells) / start.cells.shape[1]
+
+    def arrays(self):
+        return {"grid": np.array([self.grid.columns, self.grid.rows]), "lag_s": np.array(self.lag_s)}
+
+
+def test_a_model_of_another_kind_needs_nothing_but_its_two_entries(monkeypatch, tmp_path):
+    frames, grid = stirred(11)
+
+    def learn(frames, grid, lag=1, estimator="pooled", step_weights=None, speed=0):
+        return Still(grid, lag * frames.interval_s)
+
+    def read(arrays):
+        return Still(Grid(0.05, 0.08, *(int(n) for n in arrays["grid"])), float(arrays["lag_s"]))
+
+    monkeypatch.setitem(models.LEARNERS, "still", learn)
+    monkeypatch.setitem(models.READERS, "still", read)
+    start = frames.part(slice(8, 12))
+    for name in models.LEARNERS:
+        options = {"speed": 0} if name == "still" else {}
+        models.save(models.learn(name, frames, grid, **options), tmp_path / f"transitions_{name}.npz")
+        chain = models.load(tmp_path / f"transitions_{name}.npz")
+        marked = sides(start.x_m[-1], start.z_m[-1], 0.02, 0.05)
+        assert chain.mixing(start, 0.02, 0.05, 4).shape == (5, 4)
+        assert chain.densities(start, marked, [0, 4]).sum(axis=2) == pytest.approx(
+            np.tile(marked.sum(axis=1), (2, 1))
+        )
+        assert len(list(chain.paths(start, 4, np.random.default_rng(1)))) == 5

@@ -118,36 +118,22 @@ void bedFoam::DemCoupling::advance()
     dem_.advance(steps_);
 }
 
-void bedFoam::DemCoupling::toGrid(const volScalarField& from, SlabField& to, int component) const
-{
-    forAll(from, cell) to.values[static_cast<size_t>(grid_.place(cell))*to.components + component] = from[cell];
-}
-
-void bedFoam::DemCoupling::toGrid(const volVectorField& from, SlabField& to, int component) const
-{
-    forAll(from, cell)
-    {
-        double* target = &to.values[static_cast<size_t>(grid_.place(cell))*to.components + component];
-        for (direction d = 0; d < 3; ++d) target[d] = from[cell][d];
-    }
-}
-
 void bedFoam::DemCoupling::depositVolume(volScalarField& voidage)
 {
     particles_.resize(dem_.count());
-    SlabField solids = grid_.field(1);
+    SlabField<1> solids = grid_.field<1>();
     for (size_t i = 0; i < particles_.size(); ++i)
     {
         particles_[i].stencil = grid_.locate(dem_.position()[i]);
-        grid_.deposit(solids, particles_[i].stencil, &volume_);
+        grid_.deposit<1>(solids, particles_[i].stencil, {{volume_}});
     }
-    grid_.completeDeposit(solids);
+    grid_.completeDeposit<1>(solids);
 
     clipped_ = 0;
     scalarField& values = voidage.primitiveFieldRef();
     forAll(values, cell)
     {
-        const double value = 1 - solids.values[grid_.place(cell)]/grid_.cellVolume();
+        const double value = 1 - solids[grid_.place(cell)][0]/grid_.cellVolume();
         if (value < smallestVoidage) ++clipped_;
         values[cell] = max(value, smallestVoidage);
     }
@@ -160,19 +146,20 @@ void bedFoam::DemCoupling::depositDrag
     const volVectorField& U, const volScalarField& voidage, volScalarField& dragRate, volVectorField& dragSource
 )
 {
-    SlabField gas = grid_.field(4);
-    toGrid(U, gas, 0);
-    toGrid(voidage, gas, 3);
-    grid_.prepareSample(gas);
+    using Four = std::array<double, 4>;
+    SlabField<4> gas = gridField<4>
+    (
+        [&](Four& value, label cell) { value = {{U[cell].x(), U[cell].y(), U[cell].z(), voidage[cell]}}; }
+    );
+    grid_.prepareSample<4>(gas);
 
     double** velocity = dem_.velocity();
     double** dragged = dem_.draggedVelocity();
-    SlabField drag = grid_.field(4);
+    SlabField<4> drag = grid_.field<4>();
     for (size_t i = 0; i < particles_.size(); ++i)
     {
         Exchange& particle = particles_[i];
-        double around[4];
-        grid_.sample(gas, particle.stencil, around);
+        const Four around = grid_.sample<4>(gas, particle.stencil);
         const double slip = std::sqrt
         (
             sqr(around[0] - velocity[i][0]) + sqr(around[1] - velocity[i][1]) + sqr(around[2] - velocity[i][2])
@@ -180,20 +167,20 @@ void bedFoam::DemCoupling::depositDrag
         const double explicitDrag = dragLaw_({around[3], diameter_, slip, gasDensity_, gasViscosity_});
         particle.drag = explicitDrag/(1 + interval_*explicitDrag/mass_);
 
-        double given[4] = {particle.drag, 0, 0, 0};
+        Four given{{particle.drag}};
         for (int d = 0; d < 3; ++d)
         {
             particle.undragged[d] = 2*velocity[i][d] - dragged[i][d];
             given[d + 1] = particle.drag*particle.undragged[d];
         }
-        grid_.deposit(drag, particle.stencil, given);
+        grid_.deposit<4>(drag, particle.stencil, given);
     }
-    grid_.completeDeposit(drag);
+    grid_.completeDeposit<4>(drag);
 
     const double perVolume = 1/(gasDensity_*grid_.cellVolume());
     forAll(dragRate, cell)
     {
-        const double* value = &drag.values[static_cast<size_t>(grid_.place(cell))*4];
+        const Four& value = drag[grid_.place(cell)];
         dragRate[cell] = perVolume*value[0];
         dragSource[cell] = perVolume*vector(value[1], value[2], value[3]);
     }
@@ -214,10 +201,19 @@ void bedFoam::DemCoupling::applyForces
     const volScalarField& dragRate, const volVectorField& dragSource
 )
 {
-    SlabField gas = grid_.field(6);
-    toGrid(U, gas, 0);
-    toGrid(gradP, gas, 3);
-    grid_.prepareSample(gas);
+    using Six = std::array<double, 6>;
+    SlabField<6> gas = gridField<6>
+    (
+        [&](Six& value, label cell)
+        {
+            for (direction d = 0; d < 3; ++d)
+            {
+                value[d] = U[cell][d];
+                value[d + 3] = gradP[cell][d];
+            }
+        }
+    );
+    grid_.prepareSample<6>(gas);
 
     double** velocity = dem_.velocity();
     double** force = dem_.force();
@@ -227,8 +223,7 @@ void bedFoam::DemCoupling::applyForces
     for (size_t i = 0; i < particles_.size(); ++i)
     {
         const Exchange& particle = particles_[i];
-        double around[6];
-        grid_.sample(gas, particle.stencil, around);
+        const Six around = grid_.sample<6>(gas, particle.stencil);
         for (int d = 0; d < 3; ++d)
         {
             // Across a single layer even a force of round-off would make the bed buckle

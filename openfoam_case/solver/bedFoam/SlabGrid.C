@@ -39,15 +39,10 @@ void bedFoam::SlabGrid::setSmoothingLength(double length)
     for (int d = 0; d < 3; ++d) diffusion_[d] = passes_ ? missing[d]/(2*passes_) : 0;
 }
 
-bedFoam::SlabField bedFoam::SlabGrid::field(int components) const
-{
-    const size_t cells = static_cast<size_t>(cells_[0] + 2)*cells_[1]*cells_[2];
-    return {components, std::vector<double>(cells*components, 0.0)};
-}
-
 bedFoam::Stencil bedFoam::SlabGrid::locate(const double* position) const
 {
-    Stencil stencil;
+    int lower[3], upper[3];
+    double share[3];
     for (int d = 0; d < 3; ++d)
     {
         const bool ghosts = d == 0;
@@ -56,132 +51,32 @@ bedFoam::Stencil bedFoam::SlabGrid::locate(const double* position) const
         const double offset = (position[d] - origin_[d])/size_[d] - 0.5;
         const int below = static_cast<int>(std::floor(offset));
         // Beyond the outermost centre both ends fall on that cell: nothing leaves through a wall
-        stencil.lower[d] = std::min(std::max(below, first), last);
-        stencil.upper[d] = std::min(std::max(below + 1, first), last);
-        stencil.upperWeight[d] = offset - below;
+        lower[d] = std::min(std::max(below, first), last);
+        upper[d] = std::min(std::max(below + 1, first), last);
+        share[d] = offset - below;
+    }
+
+    Stencil stencil;
+    stencil.count = 0;
+    const int layers = cells_[1] == 1 ? 1 : 2;
+    for (int z = 0; z < 2; ++z) for (int y = 0; y < layers; ++y) for (int x = 0; x < 2; ++x)
+    {
+        const double inY = layers == 1 ? 1 : y ? share[1] : 1 - share[1];
+        stencil.cell[stencil.count] = index(x ? upper[0] : lower[0], y ? upper[1] : lower[1], z ? upper[2] : lower[2]);
+        stencil.weight[stencil.count] = (x ? share[0] : 1 - share[0])*inY*(z ? share[2] : 1 - share[2]);
+        ++stencil.count;
     }
     return stencil;
 }
 
-void bedFoam::SlabGrid::deposit(SlabField& field, const Stencil& stencil, const double* value) const
+void bedFoam::SlabGrid::exchange(double* toLower, double* toUpper, int count) const
 {
-    const int components = field.components;
-    forCells(stencil, [&](int cell, double weight)
-    {
-        double* target = &field.values[static_cast<size_t>(cell)*components];
-        for (int c = 0; c < components; ++c) target[c] += weight*value[c];
-    });
-}
-
-void bedFoam::SlabGrid::sample(const SlabField& field, const Stencil& stencil, double* value) const
-{
-    const int components = field.components;
-    std::fill(value, value + components, 0.0);
-    forCells(stencil, [&](int cell, double weight)
-    {
-        const double* source = &field.values[static_cast<size_t>(cell)*components];
-        for (int c = 0; c < components; ++c) value[c] += weight*source[c];
-    });
-}
-
-void bedFoam::SlabGrid::completeDeposit(SlabField& field) const
-{
-    collectGhosts(field);
-    smooth(field);
-}
-
-void bedFoam::SlabGrid::prepareSample(SlabField& field) const
-{
-    smooth(field);
-    fillGhosts(field);
-}
-
-void bedFoam::SlabGrid::smooth(SlabField& field) const
-{
-    for (int pass = 0; pass < passes_; ++pass)
-    {
-        for (int direction = 0; direction < 3; ++direction)
-        {
-            if (diffusion_[direction] > 0) diffuse(field, direction);
-        }
-    }
-}
-
-void bedFoam::SlabGrid::diffuse(SlabField& field, int direction) const
-{
-    fillGhosts(field);
-    const SlabField before = field;
-    const int stride = direction == 0 ? 1 : direction == 1 ? cells_[0] + 2 : (cells_[0] + 2)*cells_[1];
-    for (int k = 0; k < cells_[2]; ++k) for (int j = 0; j < cells_[1]; ++j) for (int i = 0; i < cells_[0]; ++i)
-    {
-        const int along = direction == 0 ? i : direction == 1 ? j : k;
-        const int cell = index(i, j, k);
-        // Ghosts in x hold a copy of the last cell at a wall; the other directions stop at their own ends
-        const int below = direction > 0 && along == 0 ? cell : cell - stride;
-        const int above = direction > 0 && along == cells_[direction] - 1 ? cell : cell + stride;
-        for (int c = 0; c < field.components; ++c)
-        {
-            const auto value = [&](int at) { return before.values[static_cast<size_t>(at)*field.components + c]; };
-            field.values[static_cast<size_t>(cell)*field.components + c] +=
-                diffusion_[direction]*(value(below) - 2*value(cell) + value(above));
-        }
-    }
-}
-
-template<class Visit>
-void bedFoam::SlabGrid::forLayer(SlabField& field, int i, const std::vector<double>& values, Visit visit) const
-{
-    size_t n = 0;
-    for (int k = 0; k < cells_[2]; ++k) for (int j = 0; j < cells_[1]; ++j)
-    {
-        double* target = &field.values[static_cast<size_t>(index(i, j, k))*field.components];
-        for (int c = 0; c < field.components; ++c) visit(target[c], values[n++]);
-    }
-}
-
-std::vector<double> bedFoam::SlabGrid::layer(const SlabField& field, int i) const
-{
-    std::vector<double> values;
-    values.reserve(static_cast<size_t>(cells_[1])*cells_[2]*field.components);
-    for (int k = 0; k < cells_[2]; ++k) for (int j = 0; j < cells_[1]; ++j)
-    {
-        const double* source = &field.values[static_cast<size_t>(index(i, j, k))*field.components];
-        values.insert(values.end(), source, source + field.components);
-    }
-    return values;
-}
-
-std::array<std::vector<double>, 2> bedFoam::SlabGrid::exchange
-(
-    const std::vector<double>& toLower, const std::vector<double>& toUpper
-) const
-{
-    const int n = static_cast<int>(toLower.size());
-    std::vector<double> fromLower(n, 0.0), fromUpper(n, 0.0);
-    MPI_Sendrecv(toLower.data(), n, MPI_DOUBLE, lowerRank_, 1, fromUpper.data(), n, MPI_DOUBLE, upperRank_, 1,
+    // To a wall nothing is sent, and from there nothing comes: the layer stays as it was
+    const std::vector<double> down(toLower, toLower + count), up(toUpper, toUpper + count);
+    MPI_Sendrecv(down.data(), count, MPI_DOUBLE, lowerRank_, 1, toUpper, count, MPI_DOUBLE, upperRank_, 1,
         MPI_COMM_WORLD, MPI_STATUS_IGNORE);
-    MPI_Sendrecv(toUpper.data(), n, MPI_DOUBLE, upperRank_, 2, fromLower.data(), n, MPI_DOUBLE, lowerRank_, 2,
+    MPI_Sendrecv(up.data(), count, MPI_DOUBLE, upperRank_, 2, toLower, count, MPI_DOUBLE, lowerRank_, 2,
         MPI_COMM_WORLD, MPI_STATUS_IGNORE);
-    return {fromLower, fromUpper};
-}
-
-void bedFoam::SlabGrid::collectGhosts(SlabField& field) const
-{
-    const int last = cells_[0] - 1;
-    const auto received = exchange(layer(field, -1), layer(field, last + 1));
-    const auto add = [](double& target, double value) { target += value; };
-    forLayer(field, 0, received[0], add);
-    forLayer(field, last, received[1], add);
-}
-
-void bedFoam::SlabGrid::fillGhosts(SlabField& field) const
-{
-    const int last = cells_[0] - 1;
-    const auto first = layer(field, 0), final = layer(field, last);
-    const auto received = exchange(first, final);
-    const auto set = [](double& target, double value) { target = value; };
-    forLayer(field, -1, lowerRank_ == MPI_PROC_NULL ? first : received[0], set);
-    forLayer(field, last + 1, upperRank_ == MPI_PROC_NULL ? final : received[1], set);
 }
 
 std::array<double, 3> bedFoam::SlabGrid::centre(int cell) const

@@ -29,7 +29,7 @@ double ergun(const bedFoam::DragState& s)
     const double solids = 1 - s.voidage;
     const double perVolume =
         150*solids*s.viscosity/(s.voidage*s.diameter*s.diameter) + 1.75*s.density*s.slip/s.diameter;
-    return pi/6*std::pow(s.diameter, 3)*perVolume;
+    return pi/6*s.diameter*s.diameter*s.diameter*perVolume;
 }
 
 const std::vector<std::pair<std::string, bedFoam::DragLaw>> laws

@@ -1,0 +1,49 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Every figure is there in both forms with its numbers, and is not a blank page."""
+
+import matplotlib.image
+import pandas as pd
+import pytest
+
+NAMES = ["fig1_cells", "fig2_cost", "fig3_static", "fig4_dynamic", "fig5a_radial", "fig5b_axial", "snapshot"]
+# a page that failed to draw has a frame at most
+LEAST_INK = 0.01
+
+
+@pytest.fixture(scope="module")
+def folder(results):
+    """Where the figures are."""
+    return results / "figures"
+
+
+@pytest.mark.parametrize("name", [*NAMES, "table1"])
+def test_figure_is_drawn(folder, name):
+    picture = matplotlib.image.imread(folder / f"{name}.png")[..., :3]
+    assert (picture.min(axis=2) < 0.9).mean() > LEAST_INK
+    pdf = (folder / f"{name}.pdf").read_bytes()
+    assert pdf.startswith(b"%PDF") and b"%%EOF" in pdf[-64:]
+
+
+@pytest.mark.parametrize("name", NAMES)
+def test_figure_has_its_numbers_beside_it(folder, name):
+    assert len(pd.read_csv(folder / f"{name}.csv")) > 0
+
+
+def test_snapshot_shows_every_particle(folder, case):
+    parts = pd.read_csv(folder / "snapshot.csv").groupby("part").size()
+    assert parts["particle"] == case["particles"]["number"]
+    cells = case["bed"]["width_m"] * case["bed"]["height_m"] / case["gas"]["cell_size_m"] ** 2
+    assert parts["gas_cell"] == round(cells)
+
+
+def test_snapshot_has_bubbles_and_bed(folder):
+    voidage = pd.read_csv(folder / "snapshot.csv")["voidage_1"].dropna()
+    assert voidage.min() < 0.55
+    assert voidage.max() == pytest.approx(1, abs=0.01)
+
+
+def test_table_has_the_paper_beside_the_case(results, case):
+    table = pd.read_csv(results / "table1.csv").set_index("key")
+    assert float(table.loc["particles.number", "this_case"]) == case["particles"]["number"]
+    assert float(table.loc["particles.number", "paper"]) == 81000
+    assert {"parameter", "paper", "this_case", "unit", "note"} <= set(table.columns)

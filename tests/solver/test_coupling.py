@@ -1,0 +1,72 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""bedFoam's exchange between gas and particles: conservation, and the same on one rank and on several."""
+
+import json
+import re
+
+import numpy as np
+import pandas as pd
+import pytest
+
+from bedchain.dumps import read_dump
+from bedchain.errors import UserError
+from run_dem import run_dem
+
+ROUND_OFF = 1e-12  # relative, of sums over some hundred terms
+SOLVER_TOLERANCE = 1e-5  # of the pressure solve, between runs that cut the mesh differently
+VOLUME_BALANCE = 1e-5  # of a cell's volume a step, by the pressure solve's tolerance
+WEIGHT = 0.03  # of the weight per area
+
+
+def series(folder):
+    return pd.read_csv(folder / "bed_series.csv")
+
+
+def positions(folder, step):
+    """Particles by id at a step: (number, 5) id, x, z, vx, vz."""
+    listed = json.loads((folder / "dem.json").read_text())
+    file = next(frame["file"] for frame in listed["frames"] if frame["step"] == step)
+    values = read_dump(folder / file, listed["columns"]).values
+    return values[np.argsort(values[:, 0])]
+
+
+def test_what_the_particles_get_the_gas_loses(make_bed):
+    folder = make_bed("bed")
+    run_dem(folder, 0.06, 0.02, 2)
+    table = series(folder)
+    assert table["exchange_error_1"].max() < ROUND_OFF
+    assert table["volume_balance_1"].max() < VOLUME_BALANCE
+    assert (table["particles_1"] == 300).all()
+    assert table["voidage_clips_1"].sum() == 0
+
+
+@pytest.mark.parametrize("ranks", [2, 4])
+def test_ranks_agree_on_the_first_steps(make_bed, ranks):
+    # The settled start comes from one run, so that both begin with the same bed
+    alone, together = make_bed("alone"), make_bed("together")
+    run_dem(alone, 0.004, 0.004, 1)
+    run_dem(together, 0.004, 0.004, ranks)
+    one, several = series(alone), series(together)
+    np.testing.assert_allclose(one["pressure_drop_Pa"][0], several["pressure_drop_Pa"][0], rtol=SOLVER_TOLERANCE)
+    np.testing.assert_allclose(one["mean_height_m"], several["mean_height_m"], rtol=1e-3)
+
+
+def test_a_bed_at_rest_below_fluidization_stays(make_bed):
+    folder = make_bed("bed", gas={"superficial_velocity_m_s": 0.1})
+    run_dem(folder, 0.02, 0.02, 1)
+    moved = positions(folder, 1000)[:, 1:3] - positions(folder, 0)[:, 1:3]
+    assert np.abs(moved).max() < 1e-4
+
+
+def test_slabs_that_do_not_fit_are_refused(make_bed):
+    folder = make_bed("bed")
+    with pytest.raises(UserError, match=r"4 gas cells along x cannot be cut into 3 equal slabs.*gas.cell_size_m"):
+        run_dem(folder, 0.004, 0.004, 3)
+
+
+def test_an_unknown_drag_law_names_those_that_exist(make_bed):
+    folder = make_bed("bed")
+    file = folder / "caseParameters"
+    file.write_text(re.sub(r"drag_law \w+", "drag_law nobody", file.read_text()))
+    with pytest.raises(UserError, match="drag law nobody does not exist; there are gidaspow wen_yu"):
+        run_dem(folder, 0.004, 0.004, 1)

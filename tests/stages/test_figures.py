@@ -1,0 +1,158 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Times and figures of a bed of known motion: there in both forms, not blank, numbers beside them."""
+
+import matplotlib.image
+import numpy as np
+import pandas as pd
+import pytest
+from small_bed import (
+    BATCH,
+    COLUMNS,
+    COMPARE,
+    DIAMETER,
+    LEARN,
+    MODELS,
+    MOMENTS,
+    NUMBER,
+    ROWS,
+    SPLIT_X,
+    SPLIT_Z,
+)
+
+from bedchain.errors import UserError
+from bedchain.trajectory import read_manifest
+from plot_cells import plot_cells
+from plot_cost import plot_cost, readable_ratio, readable_seconds
+from plot_distribution import plot_distribution
+from plot_mixing import plot_mixing
+from time_models import dem_row, time_models
+
+DPI = 80
+COLOURS = {"dem": "#222222", "static": "#ee6677", "dynamic": "#4477aa"}
+# a blank page has one colour; text, axes and data of the smallest figure have far more ink
+LEAST_INK = 0.01
+
+
+def outputs(folder, name):
+    return tuple(folder / f"{name}.{form}" for form in ("png", "pdf", "csv"))
+
+
+def assert_drawn(folder, name):
+    """The figure's files are there and complete, with ink on the page; gives its table."""
+    png, pdf, csv = outputs(folder, name)
+    picture = matplotlib.image.imread(png)[..., :3]
+    assert (picture.min(axis=2) < 0.9).mean() > LEAST_INK
+    assert pdf.read_bytes().startswith(b"%PDF")
+    assert b"%%EOF" in pdf.read_bytes()[-64:]
+    assert sorted(path.name for path in folder.iterdir() if path.stem == name) == sorted(
+        path.name for path in (png, pdf, csv)
+    )
+    assert not [path for path in folder.iterdir() if path.name.startswith(".")]
+    return pd.read_csv(csv)
+
+
+@pytest.fixture(scope="session")
+def timing(bed):
+    """Table of measured times."""
+    time_models(
+        bed.dem, *bed.frames, bed.transitions, bed.timing,
+        *LEARN, *COMPARE, "pooled", SPLIT_X, SPLIT_Z, seed=1,
+    )  # fmt: skip
+    return pd.read_csv(bed.timing)
+
+
+def test_fig1_has_every_cell_with_its_particles(bed, tmp_path):
+    plot_cells(*bed.frames, *outputs(tmp_path, "fig1"), COMPARE[0], DIAMETER, "#9aa5b1", DPI)
+    table = assert_drawn(tmp_path, "fig1")
+    assert table["particles_1"].sum() == NUMBER
+    np.testing.assert_array_equal(table["cell"], np.arange(COLUMNS * ROWS))
+    np.testing.assert_array_equal(table["cell"], table["row"] * COLUMNS + table["column"])
+
+
+def test_fig1_of_a_frame_that_is_not_there_is_refused(bed, tmp_path):
+    with pytest.raises(UserError, match="no frame at 7 s"):
+        plot_cells(*bed.frames, *outputs(tmp_path, "fig1"), 7.0, DIAMETER, "#9aa5b1", DPI)
+    assert list(tmp_path.iterdir()) == []
+
+
+@pytest.mark.parametrize("model", MODELS)
+def test_figs3_and_4_show_chain_and_dem(bed, tmp_path, model):
+    plot_distribution(
+        bed.cells, bed.chains[model], *outputs(tmp_path, "fig3"), model, COMPARE[0], BATCH, "YlGnBu", DPI
+    )
+    table = assert_drawn(tmp_path, "fig3")
+    totals = table.groupby(["source", "time_s"])["share_1"].sum()
+    assert sorted(totals.index) == sorted((source, time) for source in ("dem", model) for time in MOMENTS)
+    np.testing.assert_allclose(totals, 1, rtol=1e-6)
+
+
+@pytest.mark.parametrize(("direction", "groups"), [("radial", {"left", "right"}), ("axial", {"low", "up"})])
+def test_fig5_shows_both_groups(bed, tmp_path, direction, groups):
+    plot_mixing(bed.mixing, bed.metrics, bed.chains, *outputs(tmp_path, "fig5"), direction, COLOURS, DPI)
+    table = assert_drawn(tmp_path, "fig5")
+    assert set(table["group"]) == groups
+    exact = table[table["source"].isin(MODELS)]
+    assert (exact["band_low_1"] <= exact["band_high_1"]).all()
+    assert table.loc[~table["source"].isin(MODELS), "band_low_1"].isna().all()
+
+
+def test_fig5_of_an_unknown_direction_is_refused(bed, tmp_path):
+    with pytest.raises(UserError, match="no curves of direction 'azimuthal'"):
+        plot_mixing(
+            bed.mixing, bed.metrics, bed.chains, *outputs(tmp_path, "fig5"), "azimuthal", COLOURS, DPI
+        )
+
+
+def test_timing_has_every_stage(timing):
+    assert list(timing.columns) == ["stage", "wall_s", "cpu_s", "peak_rss_mb", "work", "work_unit"]
+    kinds = ("count", "matrix", "exact", "monte_carlo")
+    assert set(timing["stage"]) == {"dem", *(f"{model}_{kind}" for model in MODELS for kind in kinds)}
+    assert (timing["wall_s"] > 0).all()
+    kernels = timing[timing["stage"] != "dem"]
+    assert (kernels["peak_rss_mb"] > 10).all()
+    moves = kernels.set_index("stage").loc["static_monte_carlo"]
+    assert (moves["work"], moves["work_unit"]) == (40 * NUMBER, "particle moves")
+
+
+def test_dem_time_of_a_window_counts_parts_of_segments(bed):
+    manifest = read_manifest(bed.dem)
+    # segments of 0.5 s that took 9 s each: one whole, and half of two
+    row = dem_row(manifest, 0.75, 1.75)
+    assert row["wall_s"] == pytest.approx(18)
+    assert row["work"] == NUMBER * 50000
+    with pytest.raises(UserError, match="segments cover"):
+        dem_row(manifest, 2.0, 4.0)
+
+
+def test_fig2_has_the_ratios_to_the_dem(timing, bed, tmp_path):
+    plot_cost(bed.timing, *outputs(tmp_path, "fig2"), "#4477aa", 1.0, DPI)
+    table = assert_drawn(tmp_path, "fig2").set_index(["model", "kind"])
+    wall = timing.set_index("stage")["wall_s"]
+    assert table.loc[("static", "exact"), "dem_over_this_1"] == pytest.approx(
+        wall["dem"] / wall["static_exact"], rel=1e-6
+    )
+    assert table.loc[("dynamic", "learn"), "wall_s"] == pytest.approx(
+        wall["dynamic_count"] + wall["dynamic_matrix"], rel=1e-6
+    )
+
+
+def test_fig2_without_the_dem_is_refused(timing, tmp_path):
+    timing[timing["stage"] != "dem"].to_csv(tmp_path / "t.csv", index=False)
+    with pytest.raises(UserError, match="no stage 'dem'"):
+        plot_cost(tmp_path / "t.csv", *outputs(tmp_path, "fig2"), "#4477aa", 1.0, DPI)
+
+
+@pytest.mark.parametrize(
+    ("value", "text"),
+    [(93.4, "93 s"), (2.34, "2.3 s"), (0.0421, "42 ms"), (3.1e-6, "3.1 µs"), (4e-8, "4e-08 s")],
+)
+def test_seconds_are_readable(value, text):
+    assert readable_seconds(value) == text
+
+
+def test_ratios_are_readable():
+    assert [readable_ratio(value) for value in (3.14, 22345.0, 1.6e6)] == [
+        "3.1",
+        "22\u2009000",
+        "1\u2009600\u2009000",
+    ]
