@@ -1,22 +1,22 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """The cells of all particles in all frames on disk: written and read a chunk of frames at a time."""
 
-import tempfile
 import zipfile
 from pathlib import Path
 from typing import NamedTuple
 
 import numpy as np
 
+from bedchain.chunks import read_frames
 from bedchain.errors import UserError
 from bedchain.frames import DataError, Frames, window
 from bedchain.grid import Grid
-from bedchain.stage import complete
+from bedchain.stage import complete, write_npy_header
 from bedchain.storage import map_array
 from bedchain.trajectory import open_trajectory
 
-# about 30 MB of positions at a time
-CHUNK_VALUES = 4_000_000
+# about 16 MB of positions and velocities at a time
+CHUNK_VALUES = 1_000_000
 # frames, in lags, that lead up to a start: more than any model's states look back
 HISTORY_LAGS = 4
 
@@ -53,18 +53,17 @@ def write_cells(trajectory: np.ndarray, times_s: np.ndarray, grid: Grid, target:
     """
     n_frames, _, n_particles = trajectory.shape
     chunk = max(1, CHUNK_VALUES // n_particles)
-    with complete(target) as temporary, tempfile.TemporaryFile(dir=target.parent) as scratch:
-        store = np.memmap(scratch, np.int32, "w+", shape=(n_frames, n_particles))
-        for first in range(0, n_frames, chunk):
-            part = trajectory[first : first + chunk]
-            store[first : first + chunk] = grid.cell_of(part[:, 0], part[:, 1], first)
-        sizes = {
-            "columns": grid.columns,
-            "rows": grid.rows,
-            "width_m": grid.width_m,
-            "height_m": grid.height_m,
-        }
-        np.savez(temporary, cells=store, times_s=times_s, **sizes)  # type: ignore[arg-type]
+    small = {"columns": grid.columns, "rows": grid.rows, "width_m": grid.width_m, "height_m": grid.height_m}
+    with complete(target) as temporary, zipfile.ZipFile(temporary, "w") as archive:
+        # what numpy.savez makes, without the whole array in memory
+        with archive.open("cells.npy", "w", force_zip64=True) as stream:
+            write_npy_header(stream, (n_frames, n_particles), np.dtype(np.int32))
+            for first in range(0, n_frames, chunk):
+                part = read_frames(trajectory, first, min(first + chunk, n_frames))
+                stream.write(grid.cell_of(part[:, 0], part[:, 1], first).tobytes())
+        for name, value in {"times_s": times_s, **small}.items():
+            with archive.open(f"{name}.npy", "w") as stream:
+                np.lib.format.write_array(stream, np.asarray(value))
 
 
 def open_cells(path: Path) -> CellStore:

@@ -6,7 +6,7 @@ import shutil
 from pathlib import Path
 
 from bedchain.case import Case
-from bedchain.case_checks import ratio
+from bedchain.case_numbers import ratio
 from bedchain.errors import UserError
 
 DUMP_COLUMNS = 5  # id x z vx vz

@@ -5,7 +5,7 @@ import math
 from dataclasses import dataclass
 
 from bedchain.case import Case, Schema, case_value, schema_keys
-from bedchain.case_checks import ratio
+from bedchain.case_numbers import ratio
 
 GRAVITY_M_S2 = 9.81  # standard value, rounded; downwards along z
 SKIN_DIAMETERS = (

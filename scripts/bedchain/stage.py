@@ -6,7 +6,9 @@ import os
 from collections.abc import Iterator
 from contextlib import contextmanager
 from pathlib import Path
+from typing import IO
 
+import numpy as np
 import pandas as pd
 
 from bedchain.errors import UserError, report_user_errors
@@ -72,6 +74,20 @@ def complete(target: Path) -> Iterator[Path]:
         temporary.replace(target)
     finally:
         temporary.unlink(missing_ok=True)
+
+
+def write_npy_header(stream: IO[bytes], shape: tuple[int, ...], dtype: np.dtype) -> None:
+    """Begin an .npy file whose values follow as bytes, in C order, a part at a time.
+
+    Parameters
+    ----------
+    stream : binary file
+    shape : tuple of int
+        Of the whole array.
+    dtype : dtype
+    """
+    described = {"descr": np.lib.format.dtype_to_descr(dtype), "fortran_order": False, "shape": shape}
+    np.lib.format.write_array_header_1_0(stream, described)
 
 
 def write_csv(table: pd.DataFrame, target: Path) -> None:

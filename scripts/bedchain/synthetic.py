@@ -5,7 +5,7 @@ from pathlib import Path
 
 import numpy as np
 from numba import njit
-from numpy.lib.format import open_memmap
+from numpy.lib import format as npy_format
 
 from bedchain.grid import Grid
 
@@ -79,14 +79,17 @@ def write_cells(
     bubbles = rng.random((BUBBLES, 3)) * [grid.width_m, REST_HEIGHT_M, 0.0] + [0.0, 0.0, YOUNG_RADIUS_M]
     coarse = Grid(grid.width_m, grid.height_m, 9, 35)
     full = n_particles / (coarse.n_cells * REST_HEIGHT_M / grid.height_m)
-    cells = open_memmap(path, "w+", np.int32, (n_frames, n_particles))
-    for frame in range(n_frames):
-        cells[frame] = grid.cell_of(x, z)
-        crowd = np.bincount(coarse.cell_of(x, z), minlength=coarse.n_cells) / full
-        crowd = crowd.reshape(coarse.rows, coarse.columns)
-        _advance(x, z, u, w, crowd, bubbles, frame * interval_s, interval_s, grid.width_m, grid.height_m, rng)
-        bubbles[:, 1] += BUBBLE_SPEED_M_S * interval_s
-        bubbles[:, 2] += GROWTH_M_S * interval_s
-        for burst in np.flatnonzero(bubbles[:, 1] > REST_HEIGHT_M):
-            bubbles[burst] = rng.random() * grid.width_m, 0.0, YOUNG_RADIUS_M
-    cells.flush()
+    with path.open("wb") as stream:
+        header = {"descr": "<i4", "fortran_order": False, "shape": (n_frames, n_particles)}
+        npy_format.write_array_header_1_0(stream, header)
+        for frame in range(n_frames):
+            stream.write(grid.cell_of(x, z).astype("<i4").tobytes())
+            crowd = np.bincount(coarse.cell_of(x, z), minlength=coarse.n_cells) / full
+            crowd = crowd.reshape(coarse.rows, coarse.columns)
+            _advance(
+                x, z, u, w, crowd, bubbles, frame * interval_s, interval_s, grid.width_m, grid.height_m, rng
+            )
+            bubbles[:, 1] += BUBBLE_SPEED_M_S * interval_s
+            bubbles[:, 2] += GROWTH_M_S * interval_s
+            for burst in np.flatnonzero(bubbles[:, 1] > REST_HEIGHT_M):
+                bubbles[burst] = rng.random() * grid.width_m, 0.0, YOUNG_RADIUS_M

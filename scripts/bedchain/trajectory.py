@@ -2,7 +2,6 @@
 """One columnar trajectory out of the frames that a run of the DEM left behind."""
 
 import json
-import os
 import re
 import shutil
 from pathlib import Path
@@ -13,6 +12,7 @@ from tqdm import tqdm
 
 from bedchain.dumps import frame_of, read_dump
 from bedchain.errors import UserError
+from bedchain.stage import complete, write_npy_header
 
 STORED = ("x", "z", "vx", "vz")
 # frames are multiples of the DEM step; their times differ from the grid by round-off only
@@ -85,20 +85,15 @@ def write_trajectory(
     frames, number = manifest["frames"], int(manifest["number"])
     shape = (len(frames), len(STORED), number)
     _check_disk(target, 4 * int(np.prod(shape)))
-    temporary = target.with_name(f".{target.name}.{os.getpid()}.part")
     ids: np.ndarray | None = None
-    try:
-        store = np.lib.format.open_memmap(temporary, mode="w+", dtype=np.float32, shape=shape)
+    rows = [manifest["columns"].index(name) for name in STORED]
+    # a plain stream: the pages of a memory map would stay in memory until the end
+    with complete(target) as temporary, temporary.open("wb") as stream:
+        write_npy_header(stream, shape, np.dtype(np.float32))
         for index in tqdm(range(len(frames)), desc="parse_dumps", unit="frame", disable=not progress):
             frame = _read_frame(manifest, index, folder, ids, bounds)
             ids = frame[manifest["columns"].index("id")].astype(np.int64) if ids is None else ids
-            for row, name in enumerate(STORED):
-                store[index, row] = frame[manifest["columns"].index(name)]
-        store.flush()
-        del store
-        temporary.replace(target)
-    finally:
-        temporary.unlink(missing_ok=True)
+            stream.write(frame[rows].astype(np.float32).tobytes())
     assert ids is not None
     return ids
 
@@ -118,7 +113,10 @@ def _read_frame(
             raise UserError(f"it holds {len(dump.values)} particles, {manifest['number']} expected{absent}")
         return frame_of(dump, columns, ids, bounds)
     except UserError as error:
-        raise UserError(f"frame {index} of {entry['file']}: {error}; {remedy(entry['file'])}") from error
+        wrong = (
+            str(error).replace(f"{folder / entry['file']}: ", "").replace(str(folder / entry["file"]), "it")
+        )
+        raise UserError(f"frame {index} of {entry['file']}: {wrong}; {remedy(entry['file'])}") from error
 
 
 def remedy(file: str) -> str:

@@ -7,7 +7,7 @@ from pathlib import Path
 import pytest
 
 from bedchain.case import load_case, load_schema, schema_keys
-from bedchain.case_checks import courant_number, is_multiple, is_prime, rayleigh_time, settled_height
+from bedchain.case_numbers import courant_number, is_multiple, is_prime, rayleigh_time, settled_height
 from bedchain.errors import CaseError, UserError, report_user_errors
 from bedchain.yaml_file import read_yaml
 

@@ -219,7 +219,7 @@ void bedFoam::DemCoupling::applyForces
     double** force = dem_.force();
     double** dragged = dem_.draggedVelocity();
     vector dragOnParticles = Zero;
-    scalar dragSize = 0;
+    scalar dragSize = 0, lift = 0;
     for (size_t i = 0; i < particles_.size(); ++i)
     {
         const Exchange& particle = particles_[i];
@@ -234,8 +234,13 @@ void bedFoam::DemCoupling::applyForces
             dragged[i][d] = velocity[i][d] + interval_*drag/mass_;
             dragOnParticles[d] += drag;
             dragSize += std::abs(drag);
+            if (d == 2) lift += drag + pressure;
         }
     }
+    reduce(lift, sumOp<scalar>());
+    const scalar number = returnReduce(scalar(particles_.size()), sumOp<scalar>());
+    supported_ = lift/max(number*(mass_ - gasDensity_*volume_)*gravity_, VSMALL);
+
     const vector dragOnGas = gasDensity_*grid_.cellVolume()*
         sum(dragSource.primitiveField() - dragRate.primitiveField()*U.primitiveField());
     exchangeError_ = mag(returnReduce(dragOnParticles + dragOnGas, sumOp<vector>()))
@@ -260,9 +265,4 @@ bedFoam::DemCoupling::Bed bedFoam::DemCoupling::bed() const
     reduce(energy, sumOp<scalar>());
     reduce(number, sumOp<scalar>());
     return {height/max(number, 1.0), energy, number};
-}
-
-double bedFoam::DemCoupling::weightPerArea(double area) const
-{
-    return returnReduce(scalar(dem_.count()), sumOp<scalar>())*(mass_ - gasDensity_*volume_)*gravity_/area;
 }

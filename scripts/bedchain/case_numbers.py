@@ -1,0 +1,65 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Numbers that decide whether a case can run: exact ratios, stable steps, the settled height."""
+
+import math
+from fractions import Fraction
+
+DENSE_VOIDAGE = 0.4  # of a packed bed; makes the estimate of the gas velocity between particles a high one
+PACKED_AREA_SHARE = 0.82  # area covered by one layer of random close-packed discs
+
+
+def ratio(length: float, unit: float) -> Fraction:
+    """``length / unit``, exact for numbers as they are written in a file (0.025 / 2e-5 is 1250)."""
+    return Fraction(repr(length)) / Fraction(repr(unit))
+
+
+def is_multiple(length: float, unit: float) -> bool:
+    """Whether `length` is a whole number of `unit`, at least one."""
+    steps = ratio(length, unit)
+    return steps.denominator == 1 and steps >= 1
+
+
+def nearest_multiple(length: float, unit: float) -> float:
+    """The multiple of `unit` nearest to `length`, at least one `unit`."""
+    return float(max(1, round(length / unit)) * Fraction(repr(unit)))
+
+
+def rounded_down(value: float) -> str:
+    """A positive value with three digits, never above it: what is advised must be allowed."""
+    digit = 10.0 ** (math.floor(math.log10(value)) - 2)
+    return f"{math.floor(value / digit) * digit:.3g}"
+
+
+def rayleigh_time(young: float, poisson: float, density: float, radius: float) -> float:
+    """Time of a surface wave over a sphere [s], the scale of the stable step.
+
+    ``pi r sqrt(rho / G) / (0.1631 nu + 0.8766)``, ``G = E / (2 (1 + nu))`` (Thornton, Randall 1988).
+
+    Parameters
+    ----------
+    young : float
+        Young's modulus [Pa].
+    poisson : float
+        Poisson's ratio [1].
+    density : float
+        Density of the sphere [kg/m3].
+    radius : float
+        Radius [m].
+    """
+    shear = young / (2 * (1 + poisson))
+    return math.pi * radius * math.sqrt(density / shear) / (0.1631 * poisson + 0.8766)
+
+
+def courant_number(velocity: float, step: float, cell: float) -> float:
+    """Courant number of the gas in a packed bed [1]: superficial `velocity` [m/s], `step` [s], `cell` [m]."""
+    return velocity / DENSE_VOIDAGE * step / cell
+
+
+def settled_height(number: int, diameter: float, width: float) -> float:
+    """Height of the settled one-layer bed [m], an estimate by random close packing of discs."""
+    return number * math.pi * diameter**2 / 4 / (PACKED_AREA_SHARE * width)
+
+
+def is_prime(number: int) -> bool:
+    """Whether a positive number is prime, by trial division."""
+    return number > 1 and all(number % divisor for divisor in range(2, math.isqrt(number) + 1))
