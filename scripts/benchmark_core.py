@@ -23,6 +23,7 @@ import numpy as np
 from scipy import sparse
 
 from bedchain import chains, dynamic, static, synthetic
+from bedchain.benchmark_table import machine, relative_rows, table
 from bedchain.counting import count_moves, count_pairs
 from bedchain.estimators import transition_matrix
 from bedchain.frames import Frames
@@ -32,7 +33,7 @@ INTERVAL_S = 0.025
 SEED = 15013
 PAPER_CELLS, FINE_CELLS = (27, 105), (270, 1050)
 FIELDS = (
-    *("work", "method", "particles", "steps", "columns", "rows", "median_s", "shortest_s"),
+    *("work", "method", "particles", "steps", "columns", "rows", "median_s", "cpu_s"),
     *("peak_rss_mb", "own_rss_mb", "entries", "repeats", "target", "met"),
 )
 
@@ -149,22 +150,23 @@ def measure(method: str, path: Path, cells: tuple[int, int], repeats: int) -> di
     Returns
     -------
     dict
-        Median and shortest time [s], peak memory of the process and what of it came with the method [MB], and
-        the number of entries of what was made.
+        Median time and processor time [s], peak memory of the process and what of it came with the method
+        [MB], and the number of entries of what was made.
     """
     array, grid = np.load(path, mmap_mode="r"), grid_of(cells)
     METHODS[method](np.array(array[:6, :1000]), grid)()
     before = peak_mb()
     run = METHODS[method](array, grid)
-    times = []
+    times, busy = [], []
     for _ in range(repeats):
-        began = time.perf_counter()
+        began, worked = time.perf_counter(), time.process_time()
         result = run()
         times.append(time.perf_counter() - began)
+        busy.append(time.process_time() - worked)
     entries = result.nnz if sparse.issparse(result) else result.size
     return {
         "median_s": statistics.median(times),
-        "shortest_s": min(times),
+        "cpu_s": statistics.median(busy),
         "peak_rss_mb": peak_mb(),
         "own_rss_mb": peak_mb() - before,
         "entries": entries,
@@ -200,6 +202,7 @@ def run_task(task: Task, folder: Path) -> dict[str, Any]:
     path = folder / f"cells_{task.particles}_{columns}x{rows}.npy"
     if not path.exists():
         synthetic.write_cells(path, grid_of(task.cells), task.particles, task.steps + 1, SEED)
+        os.sync()  # or writing it to disk is timed as reading it
     command = [sys.executable, __file__, "--method", task.method, "--cells", f"{columns}x{rows}"]
     command += ["--trajectory", str(path), "--repeats", str(task.repeats)]
     done = subprocess.run(command, capture_output=True, text=True, check=False)
@@ -215,42 +218,6 @@ def run_task(task: Task, folder: Path) -> dict[str, Any]:
     row["target"] = " and ".join(f"<= {limit:g} {unit}" for unit, limit, _ in targets)
     row["met"] = "" if not targets else "yes" if all(value <= limit for _, limit, value in targets) else "no"
     return row
-
-
-def relative_rows(rows: list[dict[str, Any]]) -> list[str]:
-    """Sentences on ratios: dynamic to static, and how time grows with the particles."""
-    by_work = {(row["work"], row["method"]): row for row in rows}
-    one = by_work["static counts and matrix", "bedchain"]
-    two = by_work["dynamic counts and matrix", "dynamic"]
-    few, many = [row for row in rows if row["work"] == "static counts from disk"]
-    growth = many["median_s"] / few["median_s"]
-    return [
-        f"Dynamic to static matrix: {two['median_s'] / one['median_s']:.1f} times the time (target <= 20), "
-        f"{two['own_rss_mb'] / max(one['own_rss_mb'], 1):.1f} times the memory, "
-        f"{two['entries'] / one['entries']:.0f} times the entries (paper: about 1000 times the cost).",
-        f"{many['particles'] / few['particles']:.0f} times the particles take {growth:.1f} times the time.",
-    ]
-
-
-def table(rows: list[dict[str, Any]]) -> str:
-    """The table in markdown."""
-    heads = ("work", "method", "particles", "cells", "median", "peak memory", "entries", "target", "met")
-    lines = ["| " + " | ".join(heads) + " |", "|---" * len(heads) + "|"]
-    for row in rows:
-        seconds = row["median_s"]
-        shown = f"{seconds:.2f} s" if seconds >= 0.1 else f"{seconds * 1e3:.1f} ms"
-        cells = f"{row['columns']} x {row['rows']}"
-        what = (row["work"], row["method"], f"{row['particles']:,}", cells, shown)
-        found = (f"{row['peak_rss_mb']:.0f} MB", f"{row['entries']:,}", row["target"], row["met"])
-        lines.append("| " + " | ".join(what + found) + " |")
-    return "\n".join(lines)
-
-
-def machine() -> str:
-    """Processor and cores."""
-    info = Path("/proc/cpuinfo").read_text() if Path("/proc/cpuinfo").exists() else ""
-    names = [line.split(":", 1)[1].strip() for line in info.splitlines() if line.startswith("model name")]
-    return f"{names[0] if names else 'unknown processor'}, {os.cpu_count()} cores (shared), one used"
 
 
 def write_csv(rows: list[dict[str, Any]], path: Path) -> None:

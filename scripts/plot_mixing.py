@@ -6,6 +6,7 @@ from pathlib import Path
 import pandas as pd
 from matplotlib import pyplot as plt
 from matplotlib.axes import Axes
+from matplotlib.patches import Patch
 
 from bedchain.bootstrap import band
 from bedchain.errors import UserError
@@ -57,7 +58,7 @@ def plot_mixing(
     table = table.merge(bands(chains), how="left", on=["time_s", "source", "group"])
     shares, mixed = (_shares(pd.read_csv(metrics), when) for when in ("start", "mean"))
     with figure_style():
-        figure, panels = plt.subplots(1, 2, figsize=(DOUBLE_COLUMN_IN, 2.65), sharex=True, sharey=True)
+        figure, panels = plt.subplots(1, 2, figsize=(DOUBLE_COLUMN_IN, 2.8), sharex=True, sharey=True)
         for axes, (group, name) in zip(panels, PANELS[direction].items(), strict=True):
             _draw_group(axes, table[table["group"] == group], colours, mixed[group])
             axes.set_title(f"{name}: {100 * shares[group]:.0f} % of the particles at the start", loc="left")
@@ -66,9 +67,10 @@ def plot_mixing(
         lowest = min(table["fraction_remaining_1"].min(), *(mixed[group] for group in PANELS[direction]))
         panels[0].set_ylim(max(0.0, lowest - 0.06), 1.03)
         panels[0].set_xlim(table["time_s"].min(), table["time_s"].max())
-        figure.legend(
-            *panels[0].get_legend_handles_labels(), loc="outside upper center", ncols=6, handlelength=2.4
-        )
+        handles, labels = panels[0].get_legend_handles_labels()
+        handles.append(Patch(color=MIXED_COLOUR, alpha=BAND_OPACITY, linewidth=0))
+        labels.append("95 % band of the chain")
+        figure.legend(handles, labels, loc="outside upper center", ncols=4, handlelength=2.4)
         save_figure(figure, png, pdf, resolution_dpi)
     write_csv(table, csv)
 

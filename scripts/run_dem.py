@@ -39,7 +39,7 @@ DECKS = Path("liggghts_inputs")
 GAS_CASE = Path("openfoam_case")
 GAS_PARTS = ["0.orig", "constant", "system"]
 ROW_EVERY = 10  # gas steps between two rows of bed_series.csv
-BYTES_PER_PARTICLE = 400  # of LIGGGHTS's restart, with its contact history
+BYTES_PER_PARTICLE = 500  # of LIGGGHTS's restart, with its contact history (480 measured)
 COLUMNS_WRITTEN = 5  # of a frame: id, x, z, vx, vz
 
 

@@ -240,7 +240,14 @@ def _starts(
         raise DataError(f"no step starts at frames {first} to {end}: the window is empty")
     if step_weights is None:
         return starts, np.ones(starts.size, np.int64)
-    return starts, np.asarray(step_weights, np.int64)[starts]
+    if len(step_weights) < n_starts or min(step_weights) < 0:
+        raise DataError(
+            f"{len(step_weights)} step weights for {n_starts} steps: one each is needed, none negative"
+        )
+    weights = np.asarray(step_weights, np.int64)[starts]
+    if not weights.any():
+        raise DataError("every step weighs nothing: the window is empty")
+    return starts, weights
 
 
 def _csr(

@@ -12,7 +12,7 @@ from scipy import sparse
 
 from bedchain.counting import Counts, count_moves, count_pairs
 from bedchain.estimators import estimated_rows, leak, transition_matrix, traps
-from bedchain.frames import Frames
+from bedchain.frames import DataError, Frames
 from bedchain.grid import Grid
 from bedchain.markov_chain import MarkovChain
 
@@ -54,8 +54,14 @@ def from_counts(
     MarkovChain
         Its report holds the share of moves that fall back on the static chain, what leaks, and the pairs
         opened.
+
+    Raises
+    ------
+    DataError
+        The first counts are not of pairs.
     """
-    assert double.pairs is not None
+    if double.pairs is None:
+        raise DataError("counts of single cells given where those of pairs belong: count_pairs makes them")
     n_cells = grid.n_cells
     now = double.pairs[:, 1].astype(np.int32)
     keys = double.pairs @ np.array([n_cells, 1])

@@ -71,8 +71,9 @@ def transition_matrix_with_openings(
     unvisited = np.flatnonzero(counts.visits == 0)
     never_left = np.setdiff1d(unvisited, returned)
     seen = (counts.visits > 0) | (np.asarray(counts.moves.sum(axis=0)).ravel() > 0)
-    remaining = sum(bool(seen[cells].any()) for cells in closed_classes(matrix))
-    return matrix, Openings(never_left, returned, remaining)
+    label, closed = classes_of(matrix)
+    remaining = np.unique(label[closed[label] & seen])
+    return matrix, Openings(never_left, returned, remaining.size)
 
 
 # Row sums of shares differ from whole numbers by round-off of the counted steps only.
@@ -198,7 +199,6 @@ def open_classes(matrix: sparse.csr_array, counts: Counts) -> tuple[sparse.csr_a
         Rows that were changed, rising.
     """
     moves = sparse.coo_array(counts.moves)
-    weight = counts.visits.astype(float)
     changed = np.zeros(matrix.shape[0], bool)
     while True:
         trap = traps(matrix, counts.visits)
@@ -210,11 +210,11 @@ def open_classes(matrix: sparse.csr_array, counts: Counts) -> tuple[sparse.csr_a
             shape=matrix.shape,
         )
         returning = np.asarray(back.sum(axis=1)).ravel()
-        total = np.where(returning > 0, weight + returning, 1.0)
-        kept = np.where(returning > 0, weight / total, 1.0)
+        total = np.where(returning > 0, counts.visits + returning, 1.0)
+        kept = np.where(returning > 0, counts.visits / total, 1.0)
         matrix = sparse.csr_array(sparse.diags_array(kept) @ matrix + sparse.diags_array(1.0 / total) @ back)
         matrix.eliminate_zeros()
-        weight += returning
+        # No row comes here twice: it now leads to all that led to it.
         changed |= returning > 0
 
 

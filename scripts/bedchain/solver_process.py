@@ -24,7 +24,8 @@ def solver_environment() -> dict[str, str]:
     environment = dict(os.environ)
     environment.setdefault("WM_PROJECT_DIR", "/usr/share/openfoam")
     environment.setdefault("OMPI_MCA_rmaps_base_oversubscribe", "1")
-    environment.setdefault("OMPI_MCA_mpi_yield_when_idle", "1")  # on a busy machine a rank that waits gives way
+    # On a busy machine a rank that waits gives way
+    environment.setdefault("OMPI_MCA_mpi_yield_when_idle", "1")
     environment.setdefault("OMPI_MCA_hwloc_base_binding_policy", "none")
     if os.geteuid() == 0:
         environment.update(OMPI_ALLOW_RUN_AS_ROOT="1", OMPI_ALLOW_RUN_AS_ROOT_CONFIRM="1")

@@ -13,6 +13,8 @@ from bedchain.trajectory import open_trajectory, read_manifest
 
 # a fluidized bed weighs on the gas alone; walls and a finite window leave this much
 WEIGHT_SHARE = 0.03
+# of gravity: what is left of the bed's ups and downs over a window of seconds
+MEAN_ACCELERATION = 0.02
 # Monte Carlo and solver sums are exact to round-off; this is far above it and far below anything physical
 ROUND_OFF = 1e-9
 # faster than a particle that falls freely from the top of the bed, or is carried by the gas
@@ -81,6 +83,13 @@ def test_pressure_drop_carries_the_bed(metrics, case):
     assert share == pytest.approx(1, abs=WEIGHT_SHARE)
     weight = metrics.loc[("dem", "weight_per_area"), "value"]
     assert weight == pytest.approx(weight_per_area(case), rel=1e-6)
+
+
+def test_gas_and_walls_carry_the_whole_weight(series, case):
+    window = series[series["time_s"].between(case["learning"]["start_s"], case["learning"]["end_s"])]
+    gas, floor, sides = (window[f"weight_on_{bearer}_1"].mean() for bearer in ("gas", "floor", "sides"))
+    assert gas + floor + sides == pytest.approx(1, abs=MEAN_ACCELERATION)
+    assert floor > 0
 
 
 def test_mean_pressure_drop_is_that_of_the_series(metrics, series, case):

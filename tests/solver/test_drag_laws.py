@@ -11,7 +11,7 @@ import pytest
 HERE = Path(__file__).parent
 LAWS = HERE.parents[1] / "openfoam_case/solver/bedFoam"
 STOKES = 3 * np.pi * 1.8e-5 * 1e-3  # drag coefficient of a lone slow sphere of 1 mm [kg/s]
-# force on a sphere of 1 mm in air (1.2 kg/m3, 1.8e-5 Pa s) at a voidage and a superficial slip [m/s], in N, four digits
+# force [N] on a sphere of 1 mm in air (1.2 kg/m3, 1.8e-5 Pa s) at a voidage and a superficial slip [m/s]
 FORCES = [
     ("gidaspow", 0.4, 0.5, 4.369e-6),
     ("beetstra", 0.4, 0.5, 4.712e-6),

@@ -4,6 +4,7 @@ import pytest
 from scipy import sparse
 
 from bedchain import chains
+from bedchain.bootstrap import block_chains
 from bedchain.consistency import chapman_kolmogorov, timescales_over_lags
 from bedchain.dispersion import dispersion_by_height
 from bedchain.frames import DataError, Frames
@@ -15,13 +16,13 @@ def framed(cells: np.ndarray, grid: Grid) -> Frames:
     return Frames(np.arange(len(cells)) * 0.025, x, z, cells)
 
 
-def walk_frames(n_particles: int = 20_000) -> tuple[Frames, Grid]:
+def walk_frames(n_particles: int = 20_000, steps: int = 60) -> tuple[Frames, Grid]:
     """A chain that is Markov on its 4 x 3 cells."""
     rng = np.random.default_rng(1)
     grid = Grid(0.04, 0.03, 4, 3)
     dense = rng.random((12, 12)) ** 6 + np.eye(12)
     matrix = sparse.csr_array(dense / dense.sum(axis=1, keepdims=True))
-    return framed(chains.simulate(matrix, rng.integers(0, 12, n_particles), 60, rng), grid), grid
+    return framed(chains.simulate(matrix, rng.integers(0, 12, n_particles), steps, rng), grid), grid
 
 
 def ballistic_frames() -> tuple[Frames, Grid]:
@@ -53,6 +54,22 @@ def test_estimated_curves_are_the_share_that_the_frames_show():
     left = np.isin(frames.cells % 4, (0, 1))
     share = (left[:-1] & left[1:]).sum() / left[:-1].sum()
     assert found.estimated[0, 0] == pytest.approx(share, abs=1e-12)
+
+
+def test_block_errors_tell_chance_from_memory():
+    for (frames, grid), markov in ((walk_frames(200, 400), True), (ballistic_frames(), False)):
+        samples = block_chains(
+            lambda weights, f=frames, g=grid: chapman_kolmogorov(
+                f, g, 0.02, 0.005, [5], step_weights=weights
+            ),
+            lambda found: found.error[0, :2],
+            len(frames.times_s) - 1,
+            12,
+            60,
+            np.random.default_rng(4),
+        )
+        in_errors = np.abs(samples.mean(axis=0)) / samples.std(axis=0)
+        assert (in_errors < 4).all() if markov else (in_errors > 20).all()
 
 
 def test_timescales_are_level_for_a_markov_process_only():

@@ -178,6 +178,12 @@ def test_bad_input_is_refused():
         count_moves(cells, 12, 4, sliding=False)
     with pytest.raises(DataError, match="window is empty"):
         count_moves(cells, 12, first=40, last=50)
+    with pytest.raises(DataError, match="28 step weights for 29 steps"):
+        count_moves(cells, 12, step_weights=np.ones(28, int))
+    with pytest.raises(DataError, match="none negative"):
+        count_moves(cells, 12, step_weights=np.arange(29) - 1)
+    with pytest.raises(DataError, match="weighs nothing"):
+        count_moves(cells, 12, step_weights=np.zeros(29, int))
     with pytest.raises(DataError, match="frames, particles"):
         count_moves(cells[0], 12)
     cells[7, 31] = 12

@@ -6,7 +6,7 @@ from made_frames import framed, stirred
 from bedchain import dynamic, models
 from bedchain.counting import Counts, count_moves, count_pairs, merge
 from bedchain.estimators import ESTIMATORS
-from bedchain.frames import Frames
+from bedchain.frames import DataError, Frames
 from bedchain.grid import Grid
 
 ROUND_OFF = 1e-12
@@ -140,3 +140,10 @@ def test_a_pair_entered_only_at_the_end_moves_on_as_its_cell_does():
     assert chain.report["pairs_opened_1"] == 1
     density = chain.long_run_density(framed(cells[:2], grid))
     assert density[2] < 0.2 and density.sum() == pytest.approx(1)
+
+
+def test_counts_of_single_cells_are_no_pairs():
+    frames, grid = stirred(13)
+    single = count_moves(frames.cells, grid.n_cells)
+    with pytest.raises(DataError, match="count_pairs makes them"):
+        dynamic.from_counts(single, single, grid, 0.025)

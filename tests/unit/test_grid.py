@@ -34,6 +34,15 @@ def test_agrees_with_a_loop_over_random_positions(dtype):
         assert cells[where] == row * 27 + column
 
 
+def test_a_float32_just_below_an_edge_stays_below():
+    edges = np.arange(1, 27) * PAPER.cell_width_m
+    stored = edges.astype(np.float32)
+    below = stored.astype(float) < edges
+    assert below.any()
+    found = PAPER.cell_of(stored[below], np.zeros(below.sum(), np.float32))
+    assert found.tolist() == np.flatnonzero(below).tolist()
+
+
 def test_the_wall_itself_as_float32_is_inside():
     assert PAPER.cell_of(np.array([0.27], np.float32), np.array([1.05], np.float32)).tolist() == [
         27 * 105 - 1

@@ -48,6 +48,7 @@ bedFoam::DemCoupling::DemCoupling
     mass_(parameters.get<scalar>("density")*constant::mathematical::pi/6*pow3(diameter_)),
     volume_(constant::mathematical::pi/6*pow3(diameter_)),
     gravity_(parameters.get<scalar>("gravity")),
+    weight_((mass_ - gasDensity_*volume_)*gravity_),
     interval_(mesh.time().deltaTValue()),
     steps_(parameters.get<label>("coupling_steps")),
     dragLaw_(namedDragLaw(gas)),
@@ -238,8 +239,7 @@ void bedFoam::DemCoupling::applyForces
         }
     }
     reduce(lift, sumOp<scalar>());
-    const scalar number = returnReduce(scalar(particles_.size()), sumOp<scalar>());
-    supported_ = lift/max(number*(mass_ - gasDensity_*volume_)*gravity_, VSMALL);
+    onGas_ = lift/max(weight_*returnReduce(scalar(particles_.size()), sumOp<scalar>()), VSMALL);
 
     const vector dragOnGas = gasDensity_*grid_.cellVolume()*
         sum(dragSource.primitiveField() - dragRate.primitiveField()*U.primitiveField());
@@ -254,15 +254,17 @@ void bedFoam::DemCoupling::writeRestart(const fileName& path)
 
 bedFoam::DemCoupling::Bed bedFoam::DemCoupling::bed() const
 {
-    scalar height = 0, energy = 0, number = dem_.count();
+    Bed bed{0, 0, scalar(dem_.count()), dem_.floorForce()/weight_, dem_.sideForce()/weight_};
     for (int i = 0; i < dem_.count(); ++i)
     {
         const double* v = dem_.velocity()[i];
-        height += dem_.position()[i][2];
-        energy += 0.5*mass_*(sqr(v[0]) + sqr(v[1]) + sqr(v[2]));
+        bed.meanHeight += dem_.position()[i][2];
+        bed.kineticEnergy += 0.5*mass_*(sqr(v[0]) + sqr(v[1]) + sqr(v[2]));
     }
-    reduce(height, sumOp<scalar>());
-    reduce(energy, sumOp<scalar>());
-    reduce(number, sumOp<scalar>());
-    return {height/max(number, 1.0), energy, number};
+    for (scalar* sum : {&bed.meanHeight, &bed.kineticEnergy, &bed.number, &bed.onFloor, &bed.onSides})
+    {
+        reduce(*sum, sumOp<scalar>());
+    }
+    for (scalar* mean : {&bed.meanHeight, &bed.onFloor, &bed.onSides}) *mean /= max(bed.number, scalar(1));
+    return bed;
 }

@@ -37,6 +37,10 @@ bedFoam::Liggghts::Liggghts
     };
     force_ = property("dragforce");
     dragged_ = property("draggedVelocity");
+    // Kept by the walls' option store_force
+    bottom_ = property("force_bottom");
+    left_ = property("force_left");
+    right_ = property("force_right");
 }
 
 bedFoam::Liggghts::~Liggghts() = default;
@@ -87,6 +91,20 @@ double** bedFoam::Liggghts::force() const
 double** bedFoam::Liggghts::draggedVelocity() const
 {
     return dragged_->array_atom;
+}
+
+double bedFoam::Liggghts::floorForce() const
+{
+    double sum = 0;
+    for (int i = 0; i < count(); ++i) sum += bottom_->array_atom[i][2];
+    return sum;
+}
+
+double bedFoam::Liggghts::sideForce() const
+{
+    double sum = 0;
+    for (int i = 0; i < count(); ++i) sum += left_->array_atom[i][2] + right_->array_atom[i][2];
+    return sum;
 }
 
 std::pair<double, double> bedFoam::Liggghts::slab() const

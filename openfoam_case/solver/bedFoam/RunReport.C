@@ -17,7 +17,7 @@ bedFoam::RunReport::RunReport(const Time& time)
     if (!Pstream::master()) return;
     table_.open(time.globalPath()/"bed_series.csv");
     table_.precision(10);
-    table_ << "time_s,inlet_velocity_m_s,pressure_drop_Pa,weight_on_gas_1,mean_height_m,kinetic_energy_J,particles_1,"
+    table_ << "time_s,inlet_velocity_m_s,pressure_drop_Pa,weight_on_gas_1,weight_on_floor_1,weight_on_sides_1,mean_height_m,kinetic_energy_J,particles_1,"
         "smallest_voidage_1,voidage_clips_1,volume_balance_1,exchange_error_1\n";
 }
 
@@ -32,7 +32,8 @@ void bedFoam::RunReport::row(const Row& values)
 {
     if (!Pstream::master()) return;
     table_ << time_.value() << ',' << values.inletVelocity << ',' << values.pressureDrop << ','
-        << values.supported << ',' << values.meanHeight << ',' << values.kineticEnergy << ',' << values.number << ','
+        << values.onGas << ',' << values.onFloor << ',' << values.onSides << ','
+        << values.meanHeight << ',' << values.kineticEnergy << ',' << values.number << ','
         << values.smallestVoidage << ',' << values.clipped << ',' << values.volumeBalance << ','
         << values.exchangeError << '\n';
 }

@@ -1,0 +1,52 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Rows of the verification table: a value, what it should be, and how near that is near enough."""
+
+import math
+from dataclasses import dataclass
+
+import pandas as pd
+
+
+@dataclass(frozen=True)
+class Row:
+    """One asserted quantity.
+
+    Attributes
+    ----------
+    quantity : str
+        What it is, with its unit in brackets.
+    value : float
+        As the solver has it.
+    reference : float
+        As the theory has it.
+    tolerance : float
+        Largest difference allowed: relative to the reference, absolute where the reference is 0.
+    source : str
+        Paper, equation or law behind the reference.
+    """
+
+    quantity: str
+    value: float
+    reference: float
+    tolerance: float
+    source: str
+
+    @property
+    def passed(self) -> bool:
+        """Whether the value is near enough; never for a NaN."""
+        scale = abs(self.reference) if self.reference else 1.0
+        return math.isfinite(self.value) and abs(self.value - self.reference) <= self.tolerance * scale
+
+
+def table_of(rows: list[Row]) -> pd.DataFrame:
+    """The table: quantity, value, reference, tolerance, pass (yes or no), source."""
+    return pd.DataFrame(
+        {
+            "quantity": [row.quantity for row in rows],
+            "value": [row.value for row in rows],
+            "reference": [row.reference for row in rows],
+            "tolerance": [row.tolerance for row in rows],
+            "pass": ["yes" if row.passed else "no" for row in rows],
+            "source": [row.source for row in rows],
+        }
+    )

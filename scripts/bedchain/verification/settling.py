@@ -1,0 +1,69 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""A lone sphere falls through gas at rest: its speed over time and in the end, for each drag law."""
+
+from pathlib import Path
+
+import numpy as np
+from scipy.integrate import solve_ivp
+from scipy.optimize import brentq
+
+from bedchain.verification.bench import Setup, run_gas, suspension
+from bedchain.verification.laws import LAWS, Law, Suspension, drag_coefficient
+from bedchain.verification.plots import Curve, draw
+from bedchain.verification.rows import Row
+
+NEAR = 0.01
+SOURCE = "m dv/dt = (m - rho V) g - K(v) v, integrated with scipy; K by {}"
+WIDTH, HEIGHT, THICKNESS, CELL = 0.2, 10.0, 1.0, 0.1  # [m]: the gas of one cell weighs 10 000 spheres
+START_X, START_Z = 0.09, 9.93  # [m], between centres of cells
+DURATION = 2.0  # [s], five times the relaxation time
+ALONE = 1 - 1e-9  # voidage around one sphere
+
+
+def falling_speed(law: Law, of: Suspension, times: np.ndarray) -> np.ndarray:
+    """Speed of a sphere that starts at rest [m/s], by an integration of its own."""
+
+    def gain(_: float, speed: np.ndarray) -> list[float]:
+        drag = drag_coefficient(law, of, ALONE, speed[0]) * speed[0]
+        return [(of.weight - drag) / of.mass]
+
+    found = solve_ivp(gain, (0, times[-1]), [0.0], t_eval=times, rtol=1e-9, atol=1e-12)
+    return np.asarray(found.y[0])
+
+
+def terminal_speed(law: Law, of: Suspension) -> float:
+    """Speed at which drag carries the sphere [m/s]."""
+    return float(
+        brentq(lambda speed: drag_coefficient(law, of, ALONE, speed) * speed - of.weight, 1e-6, 1e3)
+    )
+
+
+def setup_of(folder: Path, law: str) -> Setup:
+    """One light sphere in a wide, high and thick box."""
+    sections = {
+        "bed": {"width_m": WIDTH, "height_m": HEIGHT, "thickness_m": THICKNESS},
+        "particles": {"density_kg_m3": 1000.0},
+        "gas": {"cell_size_m": CELL, "drag_law": law, "smoothing_diameters_1": 0},
+        "time": {"dem_step_s": 2.0e-5, "gas_step_s": 1.0e-3, "frame_interval_s": 0.5},
+        "contact": {"young_modulus_Pa": 7.0e5},
+    }
+    return Setup(folder, sections, np.array([[START_X, START_Z, 0.0, 0.0, 1e-3]]))
+
+
+def check(work: Path, solver: Path, figures: Path) -> list[Row]:
+    """Rows and figure of the lone sphere."""
+    rows, curves = [], []
+    for name, law in LAWS.items():
+        setup = setup_of(work / f"settling_{name}", name)
+        table = run_gas(setup, solver, DURATION, "constant 0", row_every=10)
+        of = suspension(setup)
+        times = table["time_s"].to_numpy()
+        speed = np.sqrt(2 * table["kinetic_energy_J"].to_numpy() / of.mass)
+        expected, terminal = falling_speed(law, of, times), terminal_speed(law, of)
+        source = SOURCE.format(name)
+        gap = float(np.abs(speed - expected).max() / terminal)
+        rows.append(Row(f"terminal velocity, {name} [m/s]", speed[-1], terminal, NEAR, source))
+        rows.append(Row(f"largest gap on the way there over it, {name} [1]", gap, 0, NEAR, source))
+        curves.append(Curve(name, times, speed, expected))
+    draw(figures / "settling", curves, "time [s]", "speed of a falling sphere [m/s]")
+    return rows
