@@ -42,7 +42,7 @@ rule all:
 rule build_solver:
     input:
         script="openfoam_case/solver/build.sh",
-        sources=source_files("openfoam_case/solver", "*.C", "*.H", "files", "options"),
+        sources=source_files("openfoam_case/solver", "*.C", "*.H"),
     output:
         solver="results/bin/bedFoam",
     log:
@@ -78,7 +78,8 @@ rule run_dem:
     input:
         rules.write_parameters.output,
         solver=rules.build_solver.output.solver,
-        decks=source_files("liggghts_inputs", "in.*", "*.in"),
+        decks=["liggghts_inputs/in.settle", "liggghts_inputs/in.fluidize"],
+        blocks=source_files("liggghts_inputs/include", "*.in"),
         gas=source_files("openfoam_case", "0.orig/*", "constant/*", "system/*"),
     output:
         dem=f"{RESULTS}/dem.json",

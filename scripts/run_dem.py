@@ -46,7 +46,7 @@ COLUMNS_WRITTEN = 5  # of a frame: id, x, z, vx, vz
 def input_files(folder: Path) -> list[Path]:
     """Every file that the run depends on, in a fixed order."""
     given = [folder / "parameters.lig", folder / "caseParameters", SOLVER]
-    decks = sorted(file for file in DECKS.rglob("*") if file.is_file())
+    decks = [DECKS / "in.settle", DECKS / "in.fluidize", *sorted((DECKS / "include").glob("*.in"))]
     gas = sorted(file for part in GAS_PARTS for file in (GAS_CASE / part).rglob("*") if file.is_file())
     missing = [str(file) for file in given if not file.exists()]
     if missing:

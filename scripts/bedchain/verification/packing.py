@@ -1,0 +1,56 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Spheres to start from: lattices and loose heaps, and how dense a bed of them is."""
+
+import numpy as np
+
+
+def lattice(width: float, height: float, spacing: float, diameter: float) -> np.ndarray:
+    """Square lattice that fills a box evenly up to its walls.
+
+    Returns
+    -------
+    (n, 5) ndarray
+        x, z [m], vx, vz [m/s] = 0, diameter [m].
+    """
+    columns, rows = round(width / spacing), round(height / spacing)
+    z, x = np.meshgrid((np.arange(rows) + 0.5) * spacing, (np.arange(columns) + 0.5) * spacing, indexing="ij")
+    return at_rest(x.ravel(), z.ravel(), diameter)
+
+
+def at_rest(x: np.ndarray, z: np.ndarray, diameter: float) -> np.ndarray:
+    """Spheres at rest at these places [m], as rows of x, z, vx, vz, diameter."""
+    still = np.zeros_like(x)
+    return np.column_stack([x, z, still, still, np.full_like(x, diameter)])
+
+
+def loose(width: float, number: int, diameter: float, rng: np.random.Generator) -> np.ndarray:
+    """Lattice with gaps and random velocities that falls into a random heap."""
+    columns = int(width / (1.15 * diameter))
+    spacing = width / columns
+    rows = -(-number // columns)
+    spheres = lattice(width, rows * spacing, spacing, diameter)[:number]
+    spheres[:, 2:4] = rng.uniform(-0.1, 0.1, (number, 2))
+    return spheres
+
+
+def rows_of_voidage(
+    z: np.ndarray, diameter: float, edges: np.ndarray, row_section: float
+) -> np.ndarray:
+    """Voidage of horizontal rows, each sphere cut exactly by the planes between them.
+
+    Parameters
+    ----------
+    z : (n,) ndarray
+        Heights of the centres [m].
+    diameter : float
+        Of the spheres [m].
+    edges : (n_rows + 1,) ndarray
+        Planes [m].
+    row_section : float
+        Width times thickness of the slab [m2].
+    """
+    radius = diameter / 2
+    # Volume of a sphere below a plane at a height h over its lowest point: pi h^2 (r - h/3)
+    depth = np.clip(edges[:, None] - (z[None, :] - radius), 0, diameter)
+    below = (np.pi * depth**2 * (radius - depth / 3)).sum(axis=1)
+    return np.asarray(1 - np.diff(below) / (row_section * np.diff(edges)))
