@@ -27,6 +27,9 @@ PLOTS = [
     "fig5a_radial",
     "fig5b_axial",
     "snapshot",
+    *(["fig_difference"] if {*MODEL_FIGURES} <= {*MODELS} else []),
+    "fig_chapman_kolmogorov",
+    "fig_timescales",
 ]
 
 
@@ -35,7 +38,7 @@ rule all:
         expand(f"{FIGURES}/{{name}}{{form}}", name=PLOTS, form=FORMS.values()),
         expand(
             f"{RESULTS}/{{name}}",
-            name=["mixing.csv", "metrics.csv", "timing.csv", "table1.csv", "provenance.json"],
+            name=["mixing.csv", "metrics.csv", "diagnostics.csv", "timing.csv", "table1.csv", "provenance.json"],
         ),
 
 
@@ -156,7 +159,7 @@ rule build_transitions:
 
 rule run_chain:
     input:
-        modules("bootstrap", "cell_store", "comparison", "distribution", "errors", "frames", "mixing"),
+        modules("blocks", "bootstrap", "cell_store", "distribution", "errors", "frames", "mixing"),
         modules("models", "stage", "storage"),
         **TRAJECTORY,
         cells=rules.assign_cells.output.cells,
@@ -195,11 +198,34 @@ rule compare_mixing:
         "envs/python.yaml"
     params:
         **pick(CASE, "comparison", "mixing", "chain.models", "figures.batch_height_m"),
-        learn_start_s=CASE["learning"]["start_s"],
-        learn_end_s=CASE["learning"]["end_s"],
+        bed_start_s=CASE["learning"]["start_s"],
+        bed_end_s=CASE["comparison"]["end_s"],
         weight_Pa=weight_per_area(CASE),
     script:
         "scripts/compare_mixing.py"
+
+
+rule diagnose_chains:
+    input:
+        modules("blocks", "cell_store", "counting", "diagnosis", "estimators", "frames", "grid", "markov_chain"),
+        modules("markov_check", "mixing", "models", "passage", "propagation", "stage"),
+        **TRAJECTORY,
+        cells=rules.assign_cells.output.cells,
+        transitions=expand(rules.build_transitions.output.transitions, model=MODELS),
+    output:
+        diagnostics=f"{RESULTS}/diagnostics.csv",
+    log:
+        f"{LOGS}/diagnose_chains.log",
+    benchmark:
+        f"{BENCHMARKS}/diagnose_chains.tsv"
+    conda:
+        "envs/python.yaml"
+    params:
+        **pick(CASE, "mixing", "chain.models", "chain.estimator", "chain.seed"),
+        learning=CASE["learning"],
+        comparison=CASE["comparison"],
+    script:
+        "scripts/diagnose_chains.py"
 
 
 # Alone on the machine, since it measures times.
@@ -340,6 +366,58 @@ rule plot_snapshot:
         colour_map=CASE["figures"]["snapshot_colour_map"],
     script:
         "scripts/plot_snapshot.py"
+
+
+rule plot_difference:
+    input:
+        modules("cell_store", "diagnostics", "errors", "figures", "grid", "stage", "storage"),
+        cells=rules.assign_cells.output.cells,
+        static=expand(rules.run_chain.output.chain, model="static"),
+        dynamic=expand(rules.run_chain.output.chain, model="dynamic"),
+    output:
+        multiext(f"{FIGURES}/fig_difference", **FORMS),
+    log:
+        f"{LOGS}/plot_difference.log",
+    conda:
+        "envs/python.yaml"
+    params:
+        **pick(CASE, "figures.resolution_dpi"),
+    script:
+        "scripts/plot_difference.py"
+
+
+rule plot_chapman_kolmogorov:
+    input:
+        modules("errors", "figures", "stage"),
+        diagnostics=rules.diagnose_chains.output.diagnostics,
+    output:
+        multiext(f"{FIGURES}/fig_chapman_kolmogorov", **FORMS),
+    log:
+        f"{LOGS}/plot_chapman_kolmogorov.log",
+    conda:
+        "envs/python.yaml"
+    params:
+        **pick(CASE, "figures.resolution_dpi"),
+        colours={source: CASE["figures"][f"{source}_colour"] for source in ["dem", *MODELS]},
+    script:
+        "scripts/plot_chapman_kolmogorov.py"
+
+
+rule plot_timescales:
+    input:
+        modules("errors", "figures", "stage"),
+        diagnostics=rules.diagnose_chains.output.diagnostics,
+    output:
+        multiext(f"{FIGURES}/fig_timescales", **FORMS),
+    log:
+        f"{LOGS}/plot_timescales.log",
+    conda:
+        "envs/python.yaml"
+    params:
+        **pick(CASE, "figures.resolution_dpi"),
+        colours={model: CASE["figures"][f"{model}_colour"] for model in MODELS},
+    script:
+        "scripts/plot_timescales.py"
 
 
 rule write_provenance:

@@ -20,7 +20,7 @@ def compare_mixing(
     trajectory: Path, metadata: Path, cells: Path, chains: dict[str, Path], bed_series: Path,
     mixing: Path, metrics: Path,
     start_s: float, end_s: float, split_x_m: float, split_z_m: float, batch_height_m: float,
-    learn_start_s: float, learn_end_s: float, weight_Pa: float,
+    bed_start_s: float, bed_end_s: float, weight_Pa: float,
 ) -> None:  # fmt: skip
     """Put the curves of the DEM and of all chains in one table, and their differences in another.
 
@@ -40,8 +40,8 @@ def compare_mixing(
         Lines between left and right, low and up [m].
     batch_height_m : float
         Height of the batch of Figs. 3 and 4 [m].
-    learn_start_s, learn_end_s : float
-        The learning window, over which pressure drop and height of the bed are averaged [s].
+    bed_start_s, bed_end_s : float
+        Start of the learning and end of the comparison window, between which the bed is averaged [s].
     weight_Pa : float
         Weight of the particles over the bed's cross section [Pa].
     """
@@ -51,7 +51,7 @@ def compare_mixing(
     places = zip(frames.x_m, frames.z_m, strict=True)
     on_side = np.array([sides(x, z, split_x_m, split_z_m).mean(axis=1) for x, z in places])
     curves = [comparison.curve_table(frames.times_s, "dem", dem)]
-    rows = comparison.bed_metrics(comparison.read_series(bed_series), weight_Pa, learn_start_s, learn_end_s)
+    rows = comparison.bed_metrics(comparison.read_series(bed_series), weight_Pa, bed_start_s, bed_end_s)
     rows += [comparison.metric("particles", "dem", frames.cells.shape[1])]
     rows += comparison.dem_metrics(on_side, dem)
     for model, path in chains.items():
@@ -91,7 +91,7 @@ if "snakemake" in globals():
             snakemake.params.split_x_m,
             snakemake.params.split_z_m,
             snakemake.params.batch_height_m,
-            snakemake.params.learn_start_s,
-            snakemake.params.learn_end_s,
+            snakemake.params.bed_start_s,
+            snakemake.params.bed_end_s,
             snakemake.params.weight_Pa,
         )

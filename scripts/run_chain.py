@@ -7,12 +7,12 @@ from pathlib import Path
 import numpy as np
 
 from bedchain import models
-from bedchain.bootstrap import block_chains, correlation_steps
+from bedchain.blocks import block_length
+from bedchain.bootstrap import block_chains
 from bedchain.cell_store import frame_at, frames_up_to, open_cells, window_frames
-from bedchain.comparison import BLOCK_CORRELATIONS, FEWEST_BLOCKS
 from bedchain.distribution import batch_of
 from bedchain.errors import UserError
-from bedchain.frames import Frames, lag_frames, whole_steps, window
+from bedchain.frames import lag_frames, whole_steps, window
 from bedchain.mixing import GROUPS
 from bedchain.stage import LOG, stage
 from bedchain.storage import write_arrays
@@ -77,7 +77,7 @@ def run_chain(
             "remaining": model.mixing(start, *splits, steps),
             "remaining_monte_carlo": model.mixing(start, *splits, steps, for_mixing),
             "remaining_replicates": block_chains(
-                lambda weights: models.learn(model.name, learned_from, store.grid, lag, estimator, weights),
+                models.relearner(model.name, learned_from, store.grid, lag, estimator),
                 lambda again: again.mixing(start, *splits, steps),
                 len(learned_from.times_s) - lag,
                 block_length(learned_from, split_x_m, lag),
@@ -94,29 +94,6 @@ def run_chain(
     LOG.info(
         "%s chain: %d steps of %g s, a batch of %d particles", model.name, steps, model.lag_s, batch.sum()
     )
-
-
-def block_length(frames: Frames, split_x_m: float, lag: int) -> int:
-    """Length of the blocks that are drawn again: longer than the bed remembers, short against the window.
-
-    Parameters
-    ----------
-    frames : Frames
-        The learning window.
-    split_x_m : float
-        The line between left and right [m].
-    lag : int
-        Frames in a step of the chain.
-
-    Returns
-    -------
-    int
-        Steps.
-    """
-    left = np.array([(x < split_x_m).mean() for x in frames.x_m])
-    height = np.array([z.mean() for z in frames.z_m])
-    remembered = max(correlation_steps(left), correlation_steps(height), lag)
-    return int(np.clip(BLOCK_CORRELATIONS * remembered, 1, max(1, (len(left) - lag) // FEWEST_BLOCKS)))
 
 
 def moment_steps(moments_s: list[float], lag_s: float) -> list[int]:

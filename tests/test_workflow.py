@@ -31,6 +31,7 @@ ALL = {
     ),
     *("compare_mixing", "time_models", "plot_cells", "plot_cost", "plot_distribution", "plot_mixing"),
     *("plot_snapshot", "write_table", "write_provenance"),
+    *("diagnose_chains", "plot_difference", "plot_chapman_kolmogorov", "plot_timescales"),
 }
 PARTICLES = {"build_solver", "write_parameters", "run_dem", "parse_dumps"}
 WHOLE_BED = {"plot_snapshot"}  # needs particles and gas, no cells
@@ -126,7 +127,8 @@ def test_another_grid_runs_the_cells_and_what_follows(finished, case):
         ("cells_colour", "red", {"plot_cells": 1}),
         ("cost_colour", "red", {"plot_cost": 1}),
         ("distribution_colour_map", "magma", {"plot_distribution": 2}),
-        ("dem_colour", "red", {"plot_mixing": 2}),
+        ("dem_colour", "red", {"plot_mixing": 2, "plot_chapman_kolmogorov": 1}),
+        ("static_colour", "red", {"plot_mixing": 2, "plot_chapman_kolmogorov": 1, "plot_timescales": 1}),
         ("snapshot_colour_map", "magma", {"plot_snapshot": 1}),
     ],
 )
@@ -163,7 +165,7 @@ def test_another_batch_leaves_the_matrices_alone(finished, case):
     case("figures", "batch_height_m", "0.018")
     jobs = planned(finished)
     assert "run_chain" in jobs and "plot_distribution" in jobs
-    assert not {"build_transitions", "assign_cells", "time_models"} & set(jobs)
+    assert not {"build_transitions", "assign_cells", "time_models", "diagnose_chains"} & set(jobs)
 
 
 @pytest.mark.parametrize(

@@ -86,14 +86,14 @@ def test_pressure_drop_carries_the_bed(metrics, case):
 
 
 def test_gas_and_walls_carry_the_whole_weight(series, case):
-    window = series[series["time_s"].between(case["learning"]["start_s"], case["learning"]["end_s"])]
+    window = series[series["time_s"].between(case["learning"]["start_s"], case["comparison"]["end_s"])]
     gas, floor, sides = (window[f"weight_on_{bearer}_1"].mean() for bearer in ("gas", "floor", "sides"))
     assert gas + floor + sides == pytest.approx(1, abs=MEAN_ACCELERATION)
     assert floor > 0
 
 
 def test_mean_pressure_drop_is_that_of_the_series(metrics, series, case):
-    window = series["time_s"].between(case["learning"]["start_s"], case["learning"]["end_s"])
+    window = series["time_s"].between(case["learning"]["start_s"], case["comparison"]["end_s"])
     mean = series.loc[window, "pressure_drop_Pa"].mean()
     assert metrics.loc[("dem", "pressure_drop_mean"), "value"] == pytest.approx(mean, rel=1e-6)
 

@@ -56,6 +56,7 @@ def case_of(setup: Setup) -> dict[str, Any]:
         "comparison": {"start_s": 2 * frame, "end_s": FRAMES * frame},
         "chain": {"lag_s": frame},
         "cells": {"columns": 1, "rows": 1},
+        "run": {"ranks": 1},
         "mixing": {"split_z_m": sections["bed"]["height_m"] / 2},
     }
     case: dict[str, Any] = {"title": setup.folder.name, "seed": 10007, **moments, **windows}
@@ -134,12 +135,20 @@ def run_particles(setup: Setup, duration_s: float) -> np.ndarray:
 def read_frames(folder: Path) -> np.ndarray:
     """All frames of a folder in the order of their steps, (n_frames, n_particles, 6)."""
     dumps = [read_dump(file, COLUMNS) for file in folder.glob("frame_*.bin")]
-    frames = [dump.values[np.argsort(dump.values[:, 0])] for dump in sorted(dumps, key=lambda dump: dump.step)]
+    frames = [
+        dump.values[np.argsort(dump.values[:, 0])] for dump in sorted(dumps, key=lambda dump: dump.step)
+    ]
     return np.array(frames)
 
 
 def run_gas(
-    setup: Setup, solver: Path, duration_s: float, velocity: str, row_every: int = 1, tight: bool = False
+    setup: Setup,
+    solver: Path,
+    duration_s: float,
+    velocity: str,
+    row_every: int = 1,
+    tight: bool = False,
+    slip: bool = False,
 ) -> pd.DataFrame:
     """Run bedFoam.
 
@@ -156,6 +165,8 @@ def run_gas(
         Gas steps between two rows of the result.
     tight : bool
         Solve the gas to round-off.
+    slip : bool
+        Let the gas slip along the side walls: a flow in one dimension.
 
     Returns
     -------
@@ -168,13 +179,16 @@ def run_gas(
         shutil.copytree(GAS_CASE / name, gas / name)
     shutil.copytree(GAS_CASE / "0.orig", gas / "0")
     shutil.copy(setup.folder / "caseParameters", gas / "caseParameters")
-    # Of two entries of one name OpenFOAM takes the later
-    with (gas / "constant/gasProperties").open("a", encoding="utf-8") as stream:
-        stream.write(f"\nsuperficialVelocity {velocity};\n")
+    changes = {"constant/gasProperties": f"superficialVelocity {velocity};"}
     if tight:
-        with (gas / "system/fvSolution").open("a", encoding="utf-8") as stream:
-            limits = f"{{ tolerance {TIGHT}; relTol 0; }}"
-            stream.write(f'\nsolvers {{ p {limits} pFinal {limits} "(U|UFinal)" {limits} }}\n')
+        limits = f"{{ tolerance {TIGHT}; relTol 0; }}"
+        changes["system/fvSolution"] = f'solvers {{ p {limits} pFinal {limits} "(U|UFinal)" {limits} }}'
+    if slip:
+        changes["0/U"] = "boundaryField { sides { type slip; } }"
+    for name, text in changes.items():
+        # Of two entries of one name OpenFOAM takes the later
+        with (gas / name).open("a", encoding="utf-8") as stream:
+            stream.write(f"\n{text}\n")
     settings = {
         "ranks": 1,
         "start_time": 0,

@@ -118,7 +118,7 @@ def drag_coefficient(law: Law, of: Suspension, e: float, slip: float) -> float:
 
 
 def pressure_gradient(law: Law, of: Suspension, e: float, superficial: float) -> float:
-    """Pressure drop over height of spheres held in a gas [Pa/m], model A: ``beta u / e`` with ``u = U / e``."""
+    """Pressure drop over height of spheres held in a gas [Pa/m], model A: ``beta u / e``, ``u = U / e``."""
     return law(of, e, superficial / e) * superficial / e**2
 
 

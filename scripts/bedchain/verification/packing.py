@@ -33,9 +33,7 @@ def loose(width: float, number: int, diameter: float, rng: np.random.Generator) 
     return spheres
 
 
-def rows_of_voidage(
-    z: np.ndarray, diameter: float, edges: np.ndarray, row_section: float
-) -> np.ndarray:
+def rows_of_voidage(z: np.ndarray, diameter: float, edges: np.ndarray, row_section: float) -> np.ndarray:
     """Voidage of horizontal rows, each sphere cut exactly by the planes between them.
 
     Parameters
@@ -54,3 +52,21 @@ def rows_of_voidage(
     depth = np.clip(edges[:, None] - (z[None, :] - radius), 0, diameter)
     below = (np.pi * depth**2 * (radius - depth / 3)).sum(axis=1)
     return np.asarray(1 - np.diff(below) / (row_section * np.diff(edges)))
+
+
+def bulk_voidage(spheres_z: np.ndarray, diameter: float, section: float) -> float:
+    """Voidage of a settled bed between a diameter above the bottom and three below the top.
+
+    Parameters
+    ----------
+    spheres_z : (n,) ndarray
+        Heights of the centres [m].
+    diameter : float
+        Of the spheres [m].
+    section : float
+        Width times thickness of the slab [m2].
+    """
+    # The top: 2 % of the spheres may lie higher, alone on the surface
+    top = float(np.quantile(spheres_z, 0.98))
+    edges = np.array([diameter, top - 3 * diameter])
+    return float(rows_of_voidage(spheres_z, diameter, edges, section)[0])

@@ -55,8 +55,8 @@ def draw(stem: Path, curves: list[Curve], x_label: str, y_label: str, logarithmi
             axes.plot(curve.x[order], curve.reference[order], color=colour, linewidth=0.9, zorder=2)
             some = slice(None, None, max(1, len(curve.x) // MARKS))
             axes.plot(
-                curve.x[some], curve.value[some], shape, color=colour, markersize=3.5, markerfacecolor="white",
-                markeredgewidth=0.9, linestyle="none", label=curve.name, zorder=3,
+                curve.x[some], curve.value[some], shape, color=colour, markersize=3.5,
+                markerfacecolor="white", markeredgewidth=0.9, linestyle="none", label=curve.name, zorder=3,
             )  # fmt: skip
         axes.plot([], [], color=LINE_COLOUR, linewidth=0.9, label="theory")
         if logarithmic:

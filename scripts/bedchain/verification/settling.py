@@ -33,9 +33,7 @@ def falling_speed(law: Law, of: Suspension, times: np.ndarray) -> np.ndarray:
 
 def terminal_speed(law: Law, of: Suspension) -> float:
     """Speed at which drag carries the sphere [m/s]."""
-    return float(
-        brentq(lambda speed: drag_coefficient(law, of, ALONE, speed) * speed - of.weight, 1e-6, 1e3)
-    )
+    return float(brentq(lambda speed: drag_coefficient(law, of, ALONE, speed) * speed - of.weight, 1e-6, 1e3))
 
 
 def setup_of(folder: Path, law: str) -> Setup:

@@ -1,0 +1,211 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Is the bed Markov for a model? Its chains at several lags against the DEM, with bands from blocks of time."""
+
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from bedchain import models
+from bedchain.bootstrap import band, block_chains
+from bedchain.diagnosis import Row, row
+from bedchain.diagnostics import implied_timescales
+from bedchain.frames import DataError, Frames
+from bedchain.grid import Grid
+from bedchain.markov_chain import MarkovChain
+from bedchain.mixing import GROUPS
+from bedchain.propagation import Sides, Starts, count_starts, counted, propagated
+
+# processes whose timescales are given, slowest first; a pair of complex eigenvalues counts twice
+TIMESCALES = 5
+# chains learned again for a band, unless learning and solving one takes too long: above these entries
+REPLICATES, MOST_ENTRIES = 40, 100_000
+# windows hold at least this many steps of the longest lag
+FEWEST_STEPS = 5
+
+
+@dataclass(frozen=True)
+class Findings:
+    """What one chain says, and what the frames do.
+
+    Parameters
+    ----------
+    timescales_s : (..., n) array
+        Slowest first [s]; NaN where there are fewer.
+    remaining : (..., n_times, 4) array
+        Share of each group on its side by the chain, at whole steps [1].
+    observed : (..., n_times, 4) array
+        The same by the frames [1].
+    """
+
+    timescales_s: NDArray[np.float64]
+    remaining: NDArray[np.float64]
+    observed: NDArray[np.float64]
+
+
+def doubled_lags(lag: int, n_frames: int) -> list[int]:
+    """Lags ``lag``, ``2 lag``, ``4 lag``, ... that a window holds several steps of [frames]."""
+    lags = [lag]
+    while 2 * lags[-1] * FEWEST_STEPS < n_frames:
+        lags.append(2 * lags[-1])
+    return lags
+
+
+def check_model(
+    name: str,
+    frames: Frames,
+    grid: Grid,
+    sides: Sides,
+    lags: Sequence[int],
+    estimator: str,
+    block: int,
+    rng: np.random.Generator,
+) -> list[Row]:
+    """Implied timescales and Chapman-Kolmogorov test of one model at several lags.
+
+    Parameters
+    ----------
+    name : str
+        A name in `models.LEARNERS`.
+    frames : Frames
+        The learning window.
+    grid : Grid
+    sides : Sides
+        Of the window.
+    lags : sequence of int
+        Frames in a step.
+    estimator : {"literal", "per_step", "pooled"}
+        How counts become probabilities.
+    block : int
+        Frames in a block of the bootstrap.
+    rng : numpy Generator
+        Draws the blocks.
+
+    Returns
+    -------
+    list of dict
+        implied_timescale (part: 1 the slowest), remaining_propagated by time, and over the times
+        chapman_kolmogorov_rms and chapman_kolmogorov_mean of its difference from the frames, by group.
+    """
+    rows = []
+    for lag in lags:
+        relearn = models.relearner(name, frames, grid, lag, estimator)
+        found, replicates = with_replicates(relearn, frames, sides, lag, block, rng)
+        times = sides.gaps[sides.gaps % lag == 0] * frames.interval_s
+        rows += finding_rows(name, lag * frames.interval_s, times, found, replicates)
+    return rows
+
+
+def with_replicates(
+    relearn: Callable[[NDArray[np.int64]], models.Chain],
+    frames: Frames,
+    sides: Sides,
+    lag: int,
+    block: int,
+    rng: np.random.Generator,
+) -> tuple[Findings, Findings | None]:
+    """Findings of a chain, and those of chains learned again where that is affordable."""
+    n_steps = len(frames.times_s) - lag
+    one = np.ones(n_steps, np.int64)
+    chain = markovian(relearn(one))
+    starts = count_starts(frames, chain.grid, sides, lag, chain.history)
+    found = findings(chain, starts, sides, one)
+    if chain.matrix.nnz > MOST_ENTRIES:
+        return found, None
+    size = found.timescales_s.size
+    samples = block_chains(
+        lambda weights: findings(markovian(relearn(weights)), starts, sides, weights),
+        lambda again: np.concatenate([again.timescales_s, again.remaining.ravel(), again.observed.ravel()]),
+        n_steps,
+        min(block, n_steps),
+        REPLICATES,
+        rng,
+    )
+    curves = samples[:, size:].reshape(len(samples), 2, *found.remaining.shape)
+    return found, Findings(samples[:, :size], curves[:, 0], curves[:, 1])
+
+
+def markovian(chain: models.Chain) -> MarkovChain:
+    """The chain, if it has a transition matrix.
+
+    Raises
+    ------
+    DataError
+        It has none.
+    """
+    if not isinstance(chain, MarkovChain):
+        raise DataError(f"the {chain.name} model has no transition matrix: take it out of chain.models")
+    return chain
+
+
+def findings(chain: MarkovChain, starts: Starts, sides: Sides, weights: NDArray[np.int64]) -> Findings:
+    """Timescales of a chain, and its mixing from all starts beside the frames' own."""
+    slowest = np.full(TIMESCALES, np.nan)
+    scales = implied_timescales(chain.matrix, chain.lag_s, TIMESCALES)
+    slowest[: scales.size] = scales
+    which, remaining = propagated(chain, starts, sides, weights)
+    return Findings(slowest, remaining, counted(sides, weights)[which])
+
+
+def finding_rows(
+    source: str, lag_s: float, times_s: NDArray[np.float64], found: Findings, replicates: Findings | None
+) -> list[Row]:
+    """Findings as rows, with 95 % bands where there are replicates."""
+    rows = []
+
+    def add(quantity: str, unit: str, of: Callable[[Findings], NDArray], parts: Sequence[str], **where):  # type: ignore[no-untyped-def]
+        values = of(found)
+        low, high = np.full((2, *values.shape), np.nan)
+        if replicates:
+            samples = of(replicates)
+            # a chain learned again may have no class that is never left, and then no timescale
+            low, high = band(samples[np.isfinite(samples).all(axis=1)])
+        for part, *numbers in zip(parts, values, low, high, strict=True):
+            ends = dict(zip(("ci_low", "ci_high"), map(float, numbers[1:]), strict=True))
+            rows.append(row(quantity, source, numbers[0], unit, lag_s=lag_s, part=part, **where, **ends))
+
+    groups = [group for _, group in GROUPS]
+    scales = int(np.isfinite(found.timescales_s).sum())
+    numbered = [str(number + 1) for number in range(scales)]
+    add("implied_timescale", "s", lambda one: one.timescales_s[..., :scales], numbered)
+    for place, time in enumerate(times_s):
+        add("remaining_propagated", "1", lambda one, at=place: one.remaining[..., at, :], groups, time_s=time)
+    error = {
+        "chapman_kolmogorov_rms": lambda one: np.sqrt(((one.remaining - one.observed) ** 2).mean(axis=-2)),
+        "chapman_kolmogorov_mean": lambda one: (one.remaining - one.observed).mean(axis=-2),
+    }
+    for quantity, of in error.items():
+        add(quantity, "1", of, groups, time_s=times_s[-1])
+    return rows
+
+
+def counted_rows(sides: Sides, frames: Frames, block: int, rng: np.random.Generator) -> list[Row]:
+    """What the frames show of the mixing, with the band of blocks of starts.
+
+    Parameters
+    ----------
+    sides : Sides
+    frames : Frames
+        The same window.
+    block : int
+        Frames in a block.
+    rng : numpy Generator
+        Draws the blocks.
+
+    Returns
+    -------
+    list of dict
+        remaining_counted by time and group.
+    """
+    n_steps = len(frames.times_s) - 1
+    samples = block_chains(
+        lambda weights: weights, lambda weights: counted(sides, weights), n_steps, block, REPLICATES, rng
+    )
+    low, high = band(samples)
+    return [
+        row("remaining_counted", "dem", share, time_s=gap * frames.interval_s, part=group,
+            ci_low=float(low[place, column]), ci_high=float(high[place, column]))
+        for place, (gap, shares) in enumerate(zip(sides.gaps, counted(sides), strict=True))
+        for column, ((_, group), share) in enumerate(zip(GROUPS, shares, strict=True))
+    ]  # fmt: skip

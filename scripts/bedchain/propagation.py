@@ -1,0 +1,185 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""A chain of any model carried on from all frames of a window, against what the frames themselves show.
+
+The Chapman-Kolmogorov test for whatever is Markov on some set of states: a chain learned at a lag and run k
+steps must give what is counted k lags apart. For the static chain `consistency.chapman_kolmogorov` is the
+same from counts alone; here particles start in the states of their model, and every time has its value.
+"""
+
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy import sparse
+
+from bedchain import chains, mixing
+from bedchain.frames import DataError, Frames
+from bedchain.grid import Grid
+from bedchain.markov_chain import MarkovChain
+
+
+@dataclass(frozen=True)
+class Sides:
+    """Who is on which side in each frame, and is so again some frames later.
+
+    Parameters
+    ----------
+    split_x_m, split_z_m : float
+        Lines between left and right, and between low and up [m].
+    marked : (n_frames, 4, n_particles) bool array
+        Groups of `mixing.GROUPS`.
+    gaps : (n_gaps,) int array
+        Rising numbers of frames between two looks.
+    still : (n_gaps, n_frames, 4) int64 array
+        Particles of each group of a frame that are on its side that many frames later [1]; 0 where the
+        window ends before.
+    """
+
+    split_x_m: float
+    split_z_m: float
+    marked: NDArray[np.bool_]
+    gaps: NDArray[np.int64]
+    still: NDArray[np.int64]
+
+
+def count_sides(frames: Frames, split_x_m: float, split_z_m: float, gaps: Sequence[int]) -> Sides:
+    """Look at the particles of every frame again some frames later.
+
+    Parameters
+    ----------
+    frames : Frames
+        The window.
+    split_x_m, split_z_m : float
+        Lines between left and right, and between low and up [m].
+    gaps : sequence of int
+        Rising numbers of frames between two looks.
+
+    Returns
+    -------
+    Sides
+
+    Raises
+    ------
+    DataError
+        A gap is as long as the window.
+    """
+    n_frames = len(frames.times_s)
+    if max(gaps) >= n_frames:
+        raise DataError(f"{n_frames} frames hold no two that are {max(gaps)} apart: widen the window")
+    places = zip(frames.x_m, frames.z_m, strict=True)
+    marked = np.array([mixing.sides(np.asarray(x), np.asarray(z), split_x_m, split_z_m) for x, z in places])
+    still = np.zeros((len(gaps), n_frames, 4), np.int64)
+    for row, gap in enumerate(gaps):
+        still[row, : n_frames - gap] = (marked[: n_frames - gap] & marked[gap:]).sum(axis=2)
+    return Sides(split_x_m, split_z_m, marked, np.asarray(gaps, np.int64), still)
+
+
+def counted(sides: Sides, weights: NDArray[np.int64] | None = None) -> NDArray[np.float64]:
+    """Share of each group that is on its side each gap later, as the frames show it.
+
+    Parameters
+    ----------
+    sides : Sides
+    weights : (n_starts,) int array, optional
+        How many times each of the first frames counts as a start (bootstrap); the others count 0.
+
+    Returns
+    -------
+    (n_gaps, 4) array
+        Over all starts that the window allows [1].
+    """
+    n_frames = len(sides.marked)
+    times = np.ones(n_frames, np.int64)
+    if weights is not None:
+        times = np.concatenate((weights, np.zeros(n_frames - len(weights), np.int64)))
+    size = sides.marked.sum(axis=2)
+    began = np.array([times[: n_frames - gap] @ size[: n_frames - gap] for gap in sides.gaps])
+    stayed = np.einsum("f,gfs->gs", times, sides.still)
+    return np.divide(stayed, began, out=np.full(stayed.shape, np.nan), where=began > 0)
+
+
+@dataclass(frozen=True)
+class Starts:
+    """The pasts that particles have in the frames of a window, each once, and how many have it.
+
+    Parameters
+    ----------
+    frames : Frames
+        As many frames, one lag apart, as a past is long; as many particles as there are pasts.
+    number : tuple of 4 (n_starts, n_pasts) csr_array
+        Particles of each group with each past in each frame that a step follows [1].
+    """
+
+    frames: Frames
+    number: tuple[sparse.csr_array, ...]
+
+
+def count_starts(frames: Frames, grid: Grid, sides: Sides, lag: int, history: int) -> Starts:
+    """Find the pasts in a window.
+
+    Parameters
+    ----------
+    frames : Frames
+        The window of ``sides``.
+    grid : Grid
+    sides : Sides
+    lag : int
+        Frames in a step.
+    history : int
+        Frames, one lag apart, that make a past.
+
+    Returns
+    -------
+    Starts
+        Frames that too few others lead up to hold no particles.
+    """
+    n_starts, before = len(frames.times_s) - lag, (history - 1) * lag
+    keys = np.zeros((n_starts - before, frames.cells.shape[1]), np.int64)
+    for back in range(before, -1, -lag):
+        keys = keys * grid.n_cells + frames.cells[before - back : n_starts - back]
+    pasts, which = np.unique(keys, return_inverse=True)
+    place = (np.repeat(np.arange(before, n_starts), keys.shape[1]), which.ravel())
+    number = []
+    for group in range(sides.marked.shape[1]):
+        there = sides.marked[before:n_starts, group].ravel()
+        once = (np.ones(there.sum(), np.int64), (place[0][there], place[1][there]))
+        number.append(sparse.csr_array(sparse.coo_array(once, shape=(n_starts, pasts.size))))
+    cells = np.array([pasts // grid.n_cells**back % grid.n_cells for back in range(history)][::-1], np.int32)
+    nowhere = np.zeros(cells.shape, np.float32)
+    times = np.arange(history) * lag * frames.interval_s
+    return Starts(Frames(times, nowhere, nowhere, cells), tuple(number))
+
+
+def propagated(
+    chain: MarkovChain, starts: Starts, sides: Sides, weights: NDArray[np.int64]
+) -> tuple[NDArray[np.int64], NDArray[np.float64]]:
+    """Share of each group that is on its side after steps of a chain, expected from all starts.
+
+    Parameters
+    ----------
+    chain : MarkovChain
+        Of any lag.
+    starts : Starts
+        For the chain's lag and history.
+    sides : Sides
+    weights : (n_starts,) int array
+        How many times each frame counts as a start (bootstrap).
+
+    Returns
+    -------
+    rows : (n,) int64 array
+        Which of ``sides.gaps`` are whole steps of the chain.
+    remaining : (n, 4) array
+        After these gaps [1].
+    """
+    rows = np.flatnonzero(sides.gaps % chain.lag == 0)
+    steps = sides.gaps[rows] // chain.lag
+    shares = mixing.side_shares(chain.grid, sides.split_x_m, sides.split_z_m)[:, chain.cell_of_state]
+    # the frames of the pasts are one lag apart
+    states = replace(chain, lag=1).states(starts.frames)
+    begin = np.array(
+        [np.bincount(states, weights @ number, chain.matrix.shape[0]) for number in starts.number]
+    )
+    found = chains.expected_values(chain.matrix, begin, shares, int(steps.max(initial=0)))
+    return rows, found[steps][:, np.arange(4), np.arange(4)]

@@ -1,0 +1,156 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""What the chains imply and how far they hold: results/<case>/diagnostics.csv."""
+
+from collections.abc import Iterator, Sequence
+from pathlib import Path
+
+import numpy as np
+
+from bedchain import models
+from bedchain.blocks import block_length
+from bedchain.cell_store import frames_up_to, open_cells, window_frames
+from bedchain.counting import count_moves
+from bedchain.diagnosis import Row, arrival_row, dispersion_rows, estimator_rows, lacey_rows, table, time_rows
+from bedchain.estimators import visited_density
+from bedchain.frames import Frames
+from bedchain.grid import Grid
+from bedchain.markov_chain import MarkovChain
+from bedchain.markov_check import check_model, counted_rows, doubled_lags, markovian
+from bedchain.mixing import marked_histogram, sides
+from bedchain.passage import top_row
+from bedchain.propagation import count_sides
+from bedchain.stage import LOG, stage, write_csv
+
+# the top of the bed, for passages from its bottom: reached by this share of the particles at a time
+TOP_SHARE = 0.05
+# mixing is followed for this part of the learning window, so that many frames are starts
+FOLLOWED_SHARE = 0.5
+# moments of the comparison window at which Lacey's index is given
+LACEY_MOMENTS = 40
+# every other one of the lags is enough for dispersion coefficients
+DISPERSION_STRIDE = 2
+REPORTED = ("mixing_time", "long_run_total_variation", "chapman_kolmogorov_rms")
+
+
+def diagnose_chains(
+    trajectory: Path, metadata: Path, cells: Path, transitions: dict[str, Path], diagnostics: Path,
+    learning: dict[str, float], comparison: dict[str, float],
+    split_x_m: float, split_z_m: float, estimator: str, seed: int,
+) -> None:  # fmt: skip
+    """Test the chains on their own learning window, and read from them what they imply for the bed.
+
+    Parameters
+    ----------
+    trajectory, metadata, cells : Path
+        ``trajectory.npy``, ``trajectory.json``, ``cells.npz``.
+    transitions : dict of str to Path
+        ``transitions_<model>.npz`` by model.
+    diagnostics : Path
+        Table to make; its rows are those of `bedchain.diagnosis` and `bedchain.markov_check`.
+    learning, comparison : dict of str to float
+        ``start_s`` and ``end_s`` of each window [s].
+    split_x_m, split_z_m : float
+        Lines between left and right, low and up [m].
+    estimator : {"literal", "per_step", "pooled"}
+        How counts become probabilities.
+    seed : int
+        Of the blocks and of the particles' paths.
+    """
+    store = open_cells(cells)
+    chains = {name: markovian(models.load(path)) for name, path in transitions.items()}
+    frames = window_frames(trajectory, metadata, store, learning["start_s"], learning["end_s"])
+    lag = next(iter(chains.values())).lag
+    lags = doubled_lags(lag, len(frames.times_s))
+    longest = max(lags[-1], int(FOLLOWED_SHARE * len(frames.times_s)) // lag * lag)
+    looks = count_sides(frames, split_x_m, split_z_m, range(lag, longest + 1, lag))
+    block = block_length(frames, split_x_m, lag)
+    random = iter(np.random.default_rng(seed).spawn(1 + 3 * len(chains)))
+    density = visited_density(count_moves(frames.cells, store.grid.n_cells, lag))
+    top = top_row(density, store.grid, TOP_SHARE)
+
+    rows = estimator_rows(frames, store.grid, lag, list(chains))
+    rows += counted_rows(looks, frames, block, next(random))
+    for name in chains:
+        rows += check_model(name, frames, store.grid, looks, lags, estimator, block, next(random))
+    rows += path_rows("dem", frames, store.grid, top, lags)
+    known = in_cells(frames.times_s, frames.cells, store.grid)
+    rows += dispersion_rows("dem_cells", known, store.grid, lags[::DISPERSION_STRIDE])
+    before = frames_up_to(trajectory, metadata, store, learning["start_s"], lag)
+    for name, chain in chains.items():
+        start = np.bincount(chain.states(before), minlength=chain.matrix.shape[0]).astype(float)
+        rows += time_rows(chain, start, 1 / frames.cells.shape[1], top)
+        times = frames.times_s[::lag]
+        paths = np.array([now.copy() for now in chain.paths(before, len(times) - 1, next(random))])
+        steps = [one // lag for one in lags]
+        rows += path_rows(name, in_cells(times, paths, store.grid), store.grid, top, steps)
+    start = frames_up_to(trajectory, metadata, store, comparison["start_s"], lag)
+    window = window_frames(trajectory, metadata, store, comparison["start_s"], comparison["end_s"])
+    rows += index_rows(chains, start, window, (split_x_m, split_z_m), random)
+    write_csv(table(rows), diagnostics)
+    for one in rows:
+        if one["quantity"] in REPORTED:
+            what = f"{one['source']} {one['part']} {one['quantity']}"
+            LOG.info("%s: %.4g %s", what, one["value"], one["unit"])
+
+
+def path_rows(source: str, frames: Frames, grid: Grid, top: int, lags: Sequence[int]) -> list[Row]:
+    """Arrivals at the top and dispersion coefficients of particles followed from frame to frame."""
+    rows = [arrival_row(source, frames, grid, top)]
+    return rows + dispersion_rows(source, frames, grid, lags[::DISPERSION_STRIDE])
+
+
+def in_cells(times_s: np.ndarray, cells: np.ndarray, grid: Grid) -> Frames:
+    """Frames in which every particle is in the middle of its cell, all that a chain of cells knows."""
+    x, z = grid.centres_m.astype(np.float32).T
+    return Frames(times_s, x[cells], z[cells], np.asarray(cells))
+
+
+def index_rows(
+    chains: dict[str, MarkovChain], start: Frames, window: Frames, splits: tuple[float, float],
+    random: Iterator[np.random.Generator],
+) -> list[Row]:  # fmt: skip
+    """Lacey's index over the comparison window, by the DEM and by as many particles of each chain.
+
+    Parameters
+    ----------
+    chains : dict of str to MarkovChain
+    start : Frames
+        Up to the start of the comparison.
+    window : Frames
+        The comparison window.
+    splits : (float, float)
+        Lines between left and right, low and up [m].
+    random : iterator of numpy Generator
+        One for each chain.
+
+    Returns
+    -------
+    list of dict
+    """
+    marked = sides(np.asarray(start.x_m[-1]), np.asarray(start.z_m[-1]), *splits)
+    first = next(iter(chains.values()))
+    n_steps = (len(window.times_s) - 1) // first.lag
+    steps = np.unique(np.linspace(0, n_steps, min(n_steps, LACEY_MOMENTS) + 1).astype(int))
+    times = steps * first.lag_s
+    seen = [marked_histogram(window.cells[step * first.lag], marked, first.grid.n_cells) for step in steps]
+    rows = lacey_rows("dem", times, np.array(seen))
+    for name, chain in chains.items():
+        rows += lacey_rows(name, times, chain.densities(start, marked, list(steps), next(random)))
+    return rows
+
+
+if "snakemake" in globals():
+    with stage(snakemake.log[0]):
+        diagnose_chains(
+            Path(snakemake.input.trajectory),
+            Path(snakemake.input.metadata),
+            Path(snakemake.input.cells),
+            dict(zip(snakemake.params.models, map(Path, snakemake.input.transitions), strict=True)),
+            Path(snakemake.output.diagnostics),
+            snakemake.params.learning,
+            snakemake.params.comparison,
+            snakemake.params.split_x_m,
+            snakemake.params.split_z_m,
+            snakemake.params.estimator,
+            snakemake.params.seed,
+        )
