@@ -38,7 +38,14 @@ rule all:
         expand(f"{FIGURES}/{{name}}{{form}}", name=PLOTS, form=FORMS.values()),
         expand(
             f"{RESULTS}/{{name}}",
-            name=["mixing.csv", "metrics.csv", "diagnostics.csv", "timing.csv", "table1.csv", "provenance.json"],
+            name=[
+                "mixing.csv",
+                "metrics.csv",
+                "diagnostics.csv",
+                "timing.csv",
+                "table1.csv",
+                "provenance.json",
+            ],
         ),
 
 
@@ -207,7 +214,9 @@ rule compare_mixing:
 
 rule diagnose_chains:
     input:
-        modules("blocks", "cell_store", "counting", "diagnosis", "estimators", "frames", "grid", "markov_chain"),
+        modules(
+            "blocks", "cell_store", "counting", "diagnosis", "estimators", "frames", "grid", "markov_chain"
+        ),
         modules("markov_check", "mixing", "models", "passage", "propagation", "stage"),
         **TRAJECTORY,
         cells=rules.assign_cells.output.cells,

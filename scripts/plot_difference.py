@@ -7,6 +7,7 @@ import numpy as np
 import pandas as pd
 from matplotlib import pyplot as plt
 from matplotlib.axes import Axes
+from matplotlib.collections import PolyCollection, QuadMesh
 from matplotlib.colors import LinearSegmentedColormap, Normalize
 
 from bedchain.cell_store import open_cells
@@ -17,7 +18,7 @@ from bedchain.grid import Grid
 from bedchain.stage import LOG, stage, write_csv
 from bedchain.storage import read_arrays
 
-# from one to the other end the eye sees both colour and grey fall, and nothing is as light as white
+# two hues that colour-blind readers tell apart, white where both chains agree
 COLOURS = LinearSegmentedColormap.from_list(
     "difference", ["#10305f", "#5b8ec2", "#ffffff", "#f0a35b", "#8a3b00"]
 )
@@ -96,13 +97,17 @@ def draw_maps(
     save_figure(figure, png, pdf, resolution_dpi)
 
 
-def _draw_map(axes: Axes, values: np.ndarray, grid: Grid, limit: float):  # type: ignore[no-untyped-def]
+def _draw_map(axes: Axes, values: np.ndarray, grid: Grid, limit: float) -> QuadMesh:
     table = values.reshape(grid.rows, grid.columns)
     edges = (grid.x_edges_m, grid.z_edges_m)
     mesh = axes.pcolormesh(*edges, table, norm=Normalize(-limit, limit), cmap=COLOURS, rasterized=True)
-    less = np.ma.masked_greater(table, -HATCHED * limit)
-    hatched = axes.pcolor(*edges, less, hatch=HATCH, edgecolor=HATCH_COLOUR, linewidth=0)
-    hatched.set(array=None, facecolor="none")
+    x, z = (centre[values < -HATCHED * limit, None] for centre in grid.centres_m.T)
+    corners_x = x + 0.5 * grid.cell_width_m * np.array([-1, 1, 1, -1])
+    corners_z = z + 0.5 * grid.cell_height_m * np.array([-1, -1, 1, 1])
+    corners = np.stack((corners_x, corners_z), axis=2)
+    axes.add_collection(
+        PolyCollection(corners, facecolors="none", edgecolors=HATCH_COLOUR, hatch=HATCH, linewidths=0)
+    )
     axes.set_aspect("equal")
     return mesh
 

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Implied timescales of the chains over the lag: level where a chain is Markov, unseen where below the lag."""
+"""Implied timescales of the chains over the lag: level where a chain is Markov, unseen below the lag."""
 
 from pathlib import Path
 
@@ -20,6 +20,7 @@ MARKERS, DASHES = ("o", "s", "^"), ("-", (0, (4, 1.5)), (0, (1.2, 1.2)))
 # error bars of processes beside each other, as a share of the lag
 SHIFT = 0.035
 UNSEEN_COLOUR = "#d9d9d9"
+TICKS_S = (0.01, 0.02, 0.05, 0.1, 0.2, 0.5, 1, 2, 5, 10, 20)
 
 
 def plot_timescales(
@@ -65,9 +66,11 @@ def plot_timescales(
             axes.xaxis.set_minor_formatter(NullFormatter())
             axes.yaxis.set_major_formatter(FuncFormatter(lambda value, _: f"{value:g}"))
             axes.minorticks_off()
-            axes.set_yticks([tick for tick in (0.05, 0.1, 0.2, 0.5, 1, 2, 5) if ends_s[0] < tick < ends_s[1]])
-            axes.text(ends[1] / 1.05, lags.max() / 3, "not resolved:\ntimescale < lag", ha="right", va="center",
-                      fontsize=7, color="#333333")  # fmt: skip
+            axes.set_yticks([tick for tick in TICKS_S if ends_s[0] < tick < ends_s[1]])
+            axes.text(
+                ends[1] / 1.05, lags.max() / 3, "not resolved:\ntimescale < lag", ha="right", va="center",
+                fontsize=7, color="#333333",
+            )  # fmt: skip
         panels[0, 0].set_ylabel("implied timescale [s]")
         handles, labels = panels[0, 0].get_legend_handles_labels()
         figure.legend(handles, labels, loc="outside upper center", ncols=5, handlelength=2.8)
@@ -86,7 +89,7 @@ def processes(table: pd.DataFrame) -> pd.DataFrame:
     Returns
     -------
     DataFrame
-        source, lag_s, process (1 the slowest), timescale_s, ci_low_s, ci_high_s, turns (1 for a pair, else 0).
+        source, lag_s, process (1 the slowest), timescale_s, ci_low_s, ci_high_s, turns (1 for a pair).
     """
     parts = []
     for (source, lag), found in table.groupby(["source", "lag_s"], sort=False):

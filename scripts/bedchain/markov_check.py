@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Is the bed Markov for a model? Its chains at several lags against the DEM, with bands from blocks of time."""
+"""Is the bed Markov for a model? Chains of several lags against the DEM, with bands from blocks of time."""
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
@@ -152,32 +152,51 @@ def finding_rows(
     source: str, lag_s: float, times_s: NDArray[np.float64], found: Findings, replicates: Findings | None
 ) -> list[Row]:
     """Findings as rows, with 95 % bands where there are replicates."""
-    rows = []
-
-    def add(quantity: str, unit: str, of: Callable[[Findings], NDArray], parts: Sequence[str], **where):  # type: ignore[no-untyped-def]
-        values = of(found)
-        low, high = np.full((2, *values.shape), np.nan)
-        if replicates:
-            samples = of(replicates)
-            # a chain learned again may have no class that is never left, and then no timescale
-            low, high = band(samples[np.isfinite(samples).all(axis=1)])
-        for part, *numbers in zip(parts, values, low, high, strict=True):
-            ends = dict(zip(("ci_low", "ci_high"), map(float, numbers[1:]), strict=True))
-            rows.append(row(quantity, source, numbers[0], unit, lag_s=lag_s, part=part, **where, **ends))
-
     groups = [group for _, group in GROUPS]
     scales = int(np.isfinite(found.timescales_s).sum())
-    numbered = [str(number + 1) for number in range(scales)]
-    add("implied_timescale", "s", lambda one: one.timescales_s[..., :scales], numbered)
+    both = (found, replicates)
+    rows = _banded("implied_timescale", source, "s", _slowest, both, [str(n + 1) for n in range(scales)])
     for place, time in enumerate(times_s):
-        add("remaining_propagated", "1", lambda one, at=place: one.remaining[..., at, :], groups, time_s=time)
-    error = {
-        "chapman_kolmogorov_rms": lambda one: np.sqrt(((one.remaining - one.observed) ** 2).mean(axis=-2)),
-        "chapman_kolmogorov_mean": lambda one: (one.remaining - one.observed).mean(axis=-2),
-    }
-    for quantity, of in error.items():
-        add(quantity, "1", of, groups, time_s=times_s[-1])
-    return rows
+        now = [one and Findings(one.timescales_s, one.remaining[..., place, :], one.observed) for one in both]
+        curve = _banded("remaining_propagated", source, "1", lambda one: one.remaining, now, groups)
+        rows += [one | {"time_s": time} for one in curve]
+    for quantity, of in (("chapman_kolmogorov_rms", _rms), ("chapman_kolmogorov_mean", _mean)):
+        rows += [one | {"time_s": times_s[-1]} for one in _banded(quantity, source, "1", of, both, groups)]
+    return [one | {"lag_s": lag_s} for one in rows]
+
+
+def _slowest(found: Findings) -> NDArray[np.float64]:
+    return found.timescales_s
+
+
+def _rms(found: Findings) -> NDArray[np.float64]:
+    return np.asarray(np.sqrt(((found.remaining - found.observed) ** 2).mean(axis=-2)))
+
+
+def _mean(found: Findings) -> NDArray[np.float64]:
+    return np.asarray((found.remaining - found.observed).mean(axis=-2))
+
+
+def _banded(
+    quantity: str,
+    source: str,
+    unit: str,
+    of: Callable[[Findings], NDArray[np.float64]],
+    both: Sequence[Findings | None],
+    parts: Sequence[str],
+) -> list[Row]:
+    """A quantity of findings, one row a part, with the band of the replicates where there are any."""
+    found, replicates = both
+    assert found is not None
+    ends = np.full((2, len(parts)), np.nan)
+    if replicates is not None:
+        samples = of(replicates)[:, : len(parts)]
+        # a chain learned again may have no class that is never left, and then no timescale
+        ends = np.array(band(samples[np.isfinite(samples).all(axis=1)]))
+    return [
+        row(quantity, source, value, unit, part=part, ci_low=float(low), ci_high=float(high))
+        for part, value, low, high in zip(parts, of(found), *ends, strict=False)
+    ]
 
 
 def counted_rows(sides: Sides, frames: Frames, block: int, rng: np.random.Generator) -> list[Row]:

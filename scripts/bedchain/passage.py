@@ -34,7 +34,7 @@ def residence_in_cells(
     leaving = np.repeat(states, lengths) * chain.matrix.data * left
     origin = np.repeat(chain.cell_of_state, lengths)
     outflow = np.bincount(origin, leaving, chain.grid.n_cells)
-    density = np.bincount(chain.cell_of_state, states, chain.grid.n_cells)
+    density = np.bincount(chain.cell_of_state, states, chain.grid.n_cells).astype(np.float64)
     with np.errstate(divide="ignore", invalid="ignore"):
         return chain.lag_s * density / outflow, density
 

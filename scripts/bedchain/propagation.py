@@ -147,7 +147,7 @@ def count_starts(frames: Frames, grid: Grid, sides: Sides, lag: int, history: in
         number.append(sparse.csr_array(sparse.coo_array(once, shape=(n_starts, pasts.size))))
     cells = np.array([pasts // grid.n_cells**back % grid.n_cells for back in range(history)][::-1], np.int32)
     nowhere = np.zeros(cells.shape, np.float32)
-    times = np.arange(history) * lag * frames.interval_s
+    times = np.arange(history, dtype=np.float64) * (lag * frames.interval_s)
     return Starts(Frames(times, nowhere, nowhere, cells), tuple(number))
 
 

@@ -45,11 +45,11 @@ def test_what_the_particles_get_the_gas_loses(make_bed):
 @pytest.mark.parametrize("ranks", [2, 4])
 def test_ranks_agree_on_the_first_steps(make_bed, ranks):
     alone, together = make_bed("alone"), make_bed("together")
-    run_dem(alone, 0.004, 0.004, 1)
+    run_dem(alone, 0.008, 0.008, 1)
     # Both begin with the bed that settled on one rank
     settled = next(alone.glob("dem/*/settled"))
     shutil.copytree(settled, together / "dem" / input_stamp(input_files(together), ranks) / "settled")
-    run_dem(together, 0.004, 0.004, ranks)
+    run_dem(together, 0.008, 0.008, ranks)
     one, several = series(alone), series(together)
     np.testing.assert_allclose(
         several["pressure_drop_Pa"][0], one["pressure_drop_Pa"][0], rtol=SOLVER_TOLERANCE

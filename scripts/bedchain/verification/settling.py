@@ -41,7 +41,7 @@ def setup_of(folder: Path, law: str) -> Setup:
     sections = {
         "bed": {"width_m": WIDTH, "height_m": HEIGHT, "thickness_m": THICKNESS},
         "particles": {"density_kg_m3": 1000.0},
-        "gas": {"cell_size_m": CELL, "drag_law": law, "smoothing_diameters_1": 0},
+        "gas": {"cell_size_m": CELL, "drag_law": law, "smoothing_diameters_1": 0, "superficial_velocity_m_s": 0.0},
         "time": {"dem_step_s": 2.0e-5, "gas_step_s": 1.0e-3, "frame_interval_s": 0.5},
         "contact": {"young_modulus_Pa": 7.0e5},
     }
