@@ -88,7 +88,7 @@ def diagnose_chains(
     rows += index_rows(chains, start, window, (split_x_m, split_z_m), random)
     write_csv(table(rows), diagnostics)
     for one in rows:
-        if one["quantity"] in REPORTED:
+        if one["quantity"] in REPORTED and one["lag_s"] == lag * frames.interval_s:
             what = f"{one['source']} {one['part']} {one['quantity']}"
             LOG.info("%s: %.4g %s", what, one["value"], one["unit"])
 

@@ -7,6 +7,7 @@ import numpy as np
 import pandas as pd
 from matplotlib import pyplot as plt
 from matplotlib.axes import Axes
+from matplotlib.lines import Line2D
 from matplotlib.ticker import FuncFormatter, NullFormatter
 
 from bedchain.errors import UserError
@@ -19,7 +20,7 @@ PROCESSES = 3
 MARKERS, DASHES = ("o", "s", "^"), ("-", (0, (4, 1.5)), (0, (1.2, 1.2)))
 # error bars of processes beside each other, as a share of the lag
 SHIFT = 0.035
-UNSEEN_COLOUR = "#d9d9d9"
+UNSEEN_COLOUR, LEGEND_COLOUR = "#d9d9d9", "#444444"
 TICKS_S = (0.01, 0.02, 0.05, 0.1, 0.2, 0.5, 1, 2, 5, 10, 20)
 
 
@@ -72,8 +73,7 @@ def plot_timescales(
                 fontsize=7, color="#333333",
             )  # fmt: skip
         panels[0, 0].set_ylabel("implied timescale [s]")
-        handles, labels = panels[0, 0].get_legend_handles_labels()
-        figure.legend(handles, labels, loc="outside upper center", ncols=5, handlelength=2.8)
+        figure.legend(handles=_legend(), loc="outside upper center", ncols=5, handlelength=2.8)
         save_figure(figure, png, pdf, resolution_dpi)
     write_csv(table, csv)
 
@@ -108,21 +108,24 @@ def processes(table: pd.DataFrame) -> pd.DataFrame:
 
 
 def _draw_model(axes: Axes, table: pd.DataFrame, colour: str) -> None:
-    names = ("slowest process", "second", "third")
-    for number, (name, marker, dash) in enumerate(zip(names, MARKERS, DASHES, strict=True)):
+    for number, (marker, dash) in enumerate(zip(MARKERS, DASHES, strict=True)):
         found = table[table["process"] == number + 1].sort_values("lag_s")
         lag, scale = found["lag_s"] * (1 + SHIFT * (number - 1)), found["timescale_s"]
-        axes.plot(lag, scale, color=colour, linestyle=dash, label=name, marker=marker, ms=4.5)
+        axes.plot(lag, scale, color=colour, linestyle=dash, marker=marker, ms=4.5)
         turns = found["turns"] == 1
         axes.plot(
             lag[turns], scale[turns], color=colour, linestyle="none", marker=marker, ms=4.5, mfc="white"
         )
         # the ends of a band need not hold the value itself: blocks that are drawn twice make a chain slower
         axes.vlines(lag, found["ci_low_s"], found["ci_high_s"], color=colour, lw=0.8, alpha=0.8)
-    axes.plot(
-        [], [], color="#444444", linestyle="none", marker="o", mfc="white", ms=4.5, label="open: goes round"
-    )
-    axes.plot([], [], color="#444444", linestyle="none", marker="|", ms=9, label="95 % band")
+
+
+def _legend() -> list[Line2D]:
+    names, grey = ("slowest process", "second", "third"), {"color": LEGEND_COLOUR, "ms": 4.5}
+    styles = zip(names, MARKERS, DASHES, strict=True)
+    handles = [Line2D([], [], label=name, marker=marker, ls=dash, **grey) for name, marker, dash in styles]
+    handles.append(Line2D([], [], label="open: goes round", marker="o", ls="none", mfc="white", **grey))
+    return [*handles, Line2D([], [], label="95 % band", marker="|", ls="none", color=LEGEND_COLOUR, ms=9)]
 
 
 if "snakemake" in globals():

@@ -79,9 +79,9 @@ def case(finished):
 
     def edit(section: str, key: str, value: str) -> None:
         body = file.read_text(encoding="utf-8")
-        body = re.sub(rf"^({section}:\n(?:  .*\n)*?)  {key}:.*\n", r"\1", body, flags=re.M)
-        if re.search(rf"^{section}:\n", body, re.M):
-            body = re.sub(rf"^{section}:\n", f"{section}:\n  {key}: {value}\n", body, flags=re.M)
+        body = re.sub(rf"^({section}:.*\n(?:  .*\n)*?)  {key}:.*\n", r"\1", body, flags=re.M)
+        if re.search(rf"^{section}:.*\n", body, re.M):
+            body = re.sub(rf"^{section}:.*\n", f"{section}:\n  {key}: {value}\n", body, flags=re.M)
         else:
             body += f"{section}:\n  {key}: {value}\n"
         assert body != file.read_text(encoding="utf-8")
@@ -111,7 +111,7 @@ def test_everything_runs_in_an_empty_folder(finished, tmp_path):
 
 def test_a_comment_in_the_case_file_runs_nothing(finished, case):
     file = finished / "cases" / "short" / "case.yaml"
-    case("figures", "batch_height_m", "0.027  # three rows")
+    case("figures", "batch_height_m", "0.03  # the default, three rows")
     file.write_text(file.read_text(encoding="utf-8") + "# a comment\n", encoding="utf-8")
     assert planned(finished) == {}
 

@@ -11,7 +11,7 @@ from bedchain.cell_store import open_cells
 from bedchain.parameters import weight_per_area
 from bedchain.trajectory import open_trajectory, read_manifest
 
-# a fluidized bed weighs on the gas; its floor and side walls carry 2 to 3 % of it, which differs from window to window
+# a fluidized bed weighs on the gas; floor and side walls carry 2 to 3 % of it, by the window that is averaged
 WEIGHT_SHARE = 0.05
 # of the weight: the gas's own momentum, faster between particles than above them, and the buoyancy of air
 GAS_MOMENTUM = 0.01

@@ -1,10 +1,10 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Times and figures of a bed of known motion: there in both forms, not blank, numbers beside them."""
 
-import matplotlib.image
 import numpy as np
 import pandas as pd
 import pytest
+from drawn import COLOURS, DPI, assert_drawn, outputs
 from small_bed import (
     BATCH,
     COLUMNS,
@@ -26,29 +26,6 @@ from plot_cost import plot_cost, readable_ratio, readable_seconds
 from plot_distribution import plot_distribution
 from plot_mixing import plot_mixing
 from time_models import dem_row, time_models
-
-DPI = 80
-COLOURS = {"dem": "#222222", "static": "#ee6677", "dynamic": "#4477aa"}
-# a blank page has one colour; text, axes and data of the smallest figure have far more ink
-LEAST_INK = 0.01
-
-
-def outputs(folder, name):
-    return tuple(folder / f"{name}.{form}" for form in ("png", "pdf", "csv"))
-
-
-def assert_drawn(folder, name):
-    """The figure's files are there and complete, with ink on the page; gives its table."""
-    png, pdf, csv = outputs(folder, name)
-    picture = matplotlib.image.imread(png)[..., :3]
-    assert (picture.min(axis=2) < 0.9).mean() > LEAST_INK
-    assert pdf.read_bytes().startswith(b"%PDF")
-    assert b"%%EOF" in pdf.read_bytes()[-64:]
-    assert sorted(path.name for path in folder.iterdir() if path.stem == name) == sorted(
-        path.name for path in (png, pdf, csv)
-    )
-    assert not [path for path in folder.iterdir() if path.name.startswith(".")]
-    return pd.read_csv(csv)
 
 
 @pytest.fixture(scope="session")

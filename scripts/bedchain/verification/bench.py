@@ -11,15 +11,14 @@ import pandas as pd
 import yaml
 
 from bedchain.case import load_case, load_schema
-from bedchain.dumps import read_dump
 from bedchain.parameters import Parameter, liggghts_text, openfoam_text, solver_parameters
 from bedchain.segments import read_parameters
 from bedchain.solver_process import run_logged
 from bedchain.verification.laws import Suspension
+from bedchain.verification.particle_files import read_frames, write_particles
 
 DECKS = Path("liggghts_inputs")
 GAS_CASE = Path("openfoam_case")
-COLUMNS = ["id", "x", "z", "vx", "vz", "omegay"]
 TIGHT = 1e-13  # tolerance of the linear solvers where round-off is asked for
 FRAMES = 4  # the fewest that the windows of a case can share; the checks need no windows
 
@@ -90,19 +89,6 @@ def write_inputs(setup: Setup) -> dict[str, Any]:
     return found
 
 
-def write_particles(file: Path, particles: np.ndarray, parameters: dict[str, Any]) -> None:
-    """Spheres as a LIGGGHTS data file, one layer at y = 0, in the box of the case."""
-    depth = 4 * parameters["diameter"]
-    lines = ["spheres of a check", "", f"{len(particles)} atoms", "1 atom types", ""]
-    lines += [f"0 {parameters['width']!r} xlo xhi", f"{-depth!r} {depth!r} ylo yhi"]
-    lines += [f"0 {parameters['height']!r} zlo zhi", "", "Atoms", ""]
-    rows = list(enumerate(particles.tolist(), start=1))
-    lines += [f"{i} 1 {d!r} {parameters['density']!r} {x!r} 0 {z!r}" for i, (x, z, _, _, d) in rows]
-    lines += ["", "Velocities", ""]
-    lines += [f"{i} {vx!r} 0 {vz!r} 0 0 0" for i, (_, _, vx, vz, _) in rows]
-    file.write_text("\n".join(lines) + "\n", encoding="utf-8")
-
-
 def suspension(setup: Setup) -> Suspension:
     """Spheres and gas of a case whose inputs are written."""
     parameters = read_parameters(setup.folder / "parameters.lig")
@@ -130,15 +116,6 @@ def run_particles(setup: Setup, duration_s: float) -> np.ndarray:
         command += ["-var", name, str(value)]
     run_logged(command, setup.folder / "liggghts.log")
     return read_frames(setup.folder)
-
-
-def read_frames(folder: Path) -> np.ndarray:
-    """All frames of a folder in the order of their steps, (n_frames, n_particles, 6)."""
-    dumps = [read_dump(file, COLUMNS) for file in folder.glob("frame_*.bin")]
-    frames = [
-        dump.values[np.argsort(dump.values[:, 0])] for dump in sorted(dumps, key=lambda dump: dump.step)
-    ]
-    return np.array(frames)
 
 
 def run_gas(

@@ -69,7 +69,7 @@ def check_settling(work: Path, figures: Path) -> list[Row]:
     lost = float(len(set(frames[0, :, 0]) ^ set(frames[-1, :, 0])))
     falling = np.minimum.accumulate(total)
     draw(figures / "heap_energy", [Curve("kinetic, potential and elastic", times, total, falling)],
-         "time [s]", "energy of a heap that falls [J]")  # fmt: skip
+         "time [s]", "energy of a heap that falls [J]", line="never rising")  # fmt: skip
     source = "no force but weight and contacts that dissipate"
     return [
         Row("particles lost while settling [1]", lost, 0, 0, "conservation of particles"),
@@ -95,7 +95,7 @@ def check_balances(work: Path, solver: Path, figures: Path) -> list[Row]:
     draw(
         figures / "balances",
         curves,
-        "time [s]", "imbalance [1]", logarithmic=True,
+        "time [s]", "imbalance [1]", logarithmic=True, line="largest allowed",
     )  # fmt: skip
     number = float(np.abs(table["particles_1"] - NUMBER).max())
     return [

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Orders of convergence: of the grid on a manufactured voidage, of the step on a sinking suspension."""
+"""Orders of convergence: of the grid on a manufactured voidage, of the exchange on a falling sphere."""
 
 from pathlib import Path
 
@@ -13,7 +13,7 @@ from bedchain.verification.packing import at_rest
 from bedchain.verification.plots import Curve, draw
 from bedchain.verification.rows import Row
 from bedchain.verification.settled_bed import rows_of
-from bedchain.verification.suspension import speed_gap
+from bedchain.verification.settling import speed_gap
 
 NEAR = 0.15  # of the order: the coarsest grid has ten cells on the wave
 WIDTH, HEIGHT, DIAMETER = 0.004, 0.2, 4e-4  # [m]
@@ -22,7 +22,8 @@ SOLIDS, WAVE = 0.36, 0.1  # mean share of the solids, and how much it varies alo
 VELOCITY = 0.5  # [m/s]
 CELLS = (10, 20, 40)  # along the height
 HELD = 0.02  # [s]
-STEPS = (4e-4, 2e-4, 1e-4)  # [s], of the gas
+STEPS = (1e-2, 5e-3, 2.5e-3)  # [s], of the exchange, against a relaxation time of 0.4 s
+FALL = 0.5  # [s]
 POINTS = 4001  # of the quadrature
 
 
@@ -87,17 +88,17 @@ def order(errors: np.ndarray) -> float:
 def check(work: Path, solver: Path, figures: Path) -> list[Row]:
     """Rows and figure of both orders."""
     grid = np.array([grid_error(work, solver, cells) for cells in CELLS])
-    time = np.array([speed_gap(work, solver, step) for step in STEPS])
+    time = np.array([speed_gap(work, solver, step, FALL) for step in STEPS])
     widths, steps = 1 / np.array(CELLS), np.array(STEPS) / max(STEPS) / CELLS[0]
     curves = [
         Curve("cells, manufactured voidage", widths, grid, grid[-1] * (widths / widths[-1]) ** 2),
-        Curve("steps, sinking suspension", steps, time, time[-1] * (steps / steps[-1])),
+        Curve("steps, falling sphere", steps, time, time[-1] * (steps / steps[-1])),
     ]
     label = "width of a cell over the height; step, scaled [1]"
-    draw(figures / "convergence", curves, label, "error [1]", logarithmic=True)
+    draw(figures / "convergence", curves, label, "error [1]", logarithmic=True, line="order 2 and 1")
     return [
         Row("order of the grid, pressure on a smooth voidage [1]", order(grid), 2, NEAR,
             "one-dimensional momentum, model A, by quadrature; linear interpolation"),
-        Row("order of the gas step, speed of a suspension [1]", order(time), 1, NEAR,
+        Row("order of the exchange step, speed of a falling sphere [1]", order(time), 1, NEAR,
             "implicit Euler; reference integrated with scipy"),
     ]  # fmt: skip

@@ -6,9 +6,10 @@ from pathlib import Path
 import numpy as np
 import pandas as pd
 
-from bedchain.verification.bench import Setup, read_frames, run_gas, suspension
+from bedchain.verification.bench import Setup, run_gas, suspension
 from bedchain.verification.laws import GRAVITY, Suspension, ergun_gradient, minimum_fluidization
 from bedchain.verification.packing import bulk_voidage
+from bedchain.verification.particle_files import read_frames
 from bedchain.verification.plots import Curve, draw
 from bedchain.verification.rows import Row
 from bedchain.verification.settled_bed import random_bed, settled

@@ -7,11 +7,13 @@ from pathlib import Path
 import numpy as np
 import pandas as pd
 from matplotlib import pyplot as plt
+from matplotlib.ticker import LogLocator, NullFormatter
 
 from bedchain.figures import LINE_COLOUR, SINGLE_COLUMN_IN, figure_style, save_figure
 from bedchain.stage import write_csv
 
 RESOLUTION_DPI = 200
+DECADES_WITH_STEPS = 3  # a shorter logarithmic axis has numbers at 2 and 5 too
 MARKS = 24  # at most on a curve
 COLOURS = ["#0072b2", "#d55e00", "#009e73", "#cc79a7", "#e69f00"]  # Okabe and Ito 2008
 SHAPES = "osD^v"
@@ -35,7 +37,14 @@ class Curve:
     reference: np.ndarray
 
 
-def draw(stem: Path, curves: list[Curve], x_label: str, y_label: str, logarithmic: bool = False) -> None:
+def draw(
+    stem: Path,
+    curves: list[Curve],
+    x_label: str,
+    y_label: str,
+    logarithmic: bool = False,
+    line: str = "theory",
+) -> None:
     """Draw curves and write ``stem`` .png, .pdf and the numbers as .csv.
 
     Parameters
@@ -47,6 +56,8 @@ def draw(stem: Path, curves: list[Curve], x_label: str, y_label: str, logarithmi
         With units in brackets.
     logarithmic : bool
         Both axes.
+    line : str
+        What the lines are, for the legend.
     """
     with figure_style():
         figure, axes = plt.subplots(figsize=(SINGLE_COLUMN_IN, 0.8 * SINGLE_COLUMN_IN))
@@ -58,10 +69,16 @@ def draw(stem: Path, curves: list[Curve], x_label: str, y_label: str, logarithmi
                 curve.x[some], curve.value[some], shape, color=colour, markersize=3.5,
                 markerfacecolor="white", markeredgewidth=0.9, linestyle="none", label=curve.name, zorder=3,
             )  # fmt: skip
-        axes.plot([], [], color=LINE_COLOUR, linewidth=0.9, label="theory")
+        axes.plot([], [], color=LINE_COLOUR, linewidth=0.9, label=line)
         if logarithmic:
-            axes.set_xscale("log")
-            axes.set_yscale("log")
+            axes.loglog()
+            for axis in (axes.xaxis, axes.yaxis):
+                short = np.diff(np.log10(axis.get_view_interval()))[0] < DECADES_WITH_STEPS
+                axis.set_major_locator(LogLocator(subs=(1, 2, 5) if short else (1,)))
+                axis.set_major_formatter("{x:g}")
+                axis.set_minor_formatter(NullFormatter())
+        else:
+            axes.locator_params(axis="x", nbins=6)
         axes.set_xlabel(x_label)
         axes.set_ylabel(y_label)
         axes.legend()

@@ -6,13 +6,15 @@ slip ``w / e``. Without d(voidage)/dt in the balance the gas would stay at rest 
 """
 
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 from scipy.integrate import solve_ivp
 
-from bedchain.verification.bench import Setup, read_frames, run_gas, suspension
+from bedchain.verification.bench import Setup, run_gas, suspension
 from bedchain.verification.laws import LAWS, Suspension, drag_coefficient
 from bedchain.verification.packing import lattice
+from bedchain.verification.particle_files import read_frames
 from bedchain.verification.plots import Curve, draw
 from bedchain.verification.rows import Row
 
@@ -41,17 +43,17 @@ def sinking_speed(of: Suspension, e: float, times: np.ndarray) -> np.ndarray:
     return np.asarray(found.y[0])
 
 
-def run_suspension(folder: Path, solver: Path, duration: float, step: float) -> tuple[np.ndarray, ...]:
+def run_suspension(folder: Path, solver: Path) -> tuple[np.ndarray, ...]:
     """Times [s] of the frames, speed of the middle of the box and that of the theory [m/s]."""
-    sections = {
+    sections: dict[str, dict[str, Any]] = {
         "bed": {"width_m": WIDTH, "height_m": HEIGHT},
         "particles": {"number": 1, "diameter_m": DIAMETER},
         "gas": {"drag_law": LAW, "viscosity_Pa_s": VISCOSITY, "superficial_velocity_m_s": 0.0},
-        "time": {"gas_step_s": step, "frame_interval_s": FRAME},
+        "time": {"gas_step_s": STEP, "frame_interval_s": FRAME},
     }
     spheres = lattice(WIDTH, HEIGHT, SPACING, DIAMETER)
     setup = Setup(folder, sections, spheres, {"number": len(spheres)})
-    run_gas(setup, solver, duration, "constant 0", row_every=10)
+    run_gas(setup, solver, DURATION, "constant 0", row_every=10, slip=True)
     frames = read_frames(setup.folder)
     low, high = (share * HEIGHT for share in MIDDLE)
     of_middle = (frames[-1, :, 2] > low) & (frames[-1, :, 2] < high)
@@ -61,15 +63,9 @@ def run_suspension(folder: Path, solver: Path, duration: float, step: float) -> 
     return times, speed, sinking_speed(suspension(setup), voidage, times)
 
 
-def speed_gap(work: Path, solver: Path, step: float) -> float:
-    """Error of the speed after one frame, while it still grows, over the theory's, for a gas step [1]."""
-    _, speed, theory = run_suspension(work / f"suspension_{step:g}", solver, FRAME, step)
-    return float(abs(speed[1] - theory[1]) / theory[1])
-
-
 def check(work: Path, solver: Path, figures: Path) -> list[Row]:
     """Rows and figure of the sinking suspension."""
-    times, speed, theory = run_suspension(work / "suspension", solver, DURATION, STEP)
+    times, speed, theory = run_suspension(work / "suspension", solver)
     gap = float(np.abs(speed - theory).max() / theory[-1])
     curve = Curve("middle of the box", times, speed, theory)
     draw(figures / "suspension", [curve], "time [s]", "sinking speed of a suspension [m/s]")

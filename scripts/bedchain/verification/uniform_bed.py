@@ -2,6 +2,7 @@
 """Pressure drop of gas through a uniform lattice of spheres held in place, over a decade of velocity."""
 
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import pandas as pd
@@ -36,7 +37,7 @@ def held_pressure(table: pd.DataFrame) -> np.ndarray:
 
 def lattice_setup(folder: Path, law: str) -> Setup:
     """Touching spheres on a square lattice that fills the whole domain."""
-    sections = {
+    sections: dict[str, dict[str, Any]] = {
         "bed": {"width_m": WIDTH, "height_m": HEIGHT},
         "particles": {"number": 1},
         "gas": {"drag_law": law},

@@ -1,0 +1,138 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""What must be true of any bed's diagnostics."""
+
+import numpy as np
+import pandas as pd
+import pytest
+
+COLUMNS = ["quantity", "source", "lag_s", "time_s", "height_m", "part", "value", "unit", "ci_low", "ci_high"]
+GROUPS = ("left", "right", "low", "up")
+ESTIMATORS = ("literal", "per_step", "pooled")
+ROUND_OFF = 1e-9
+# digits of the table
+DIGITS = 1e-6
+# a chain that follows the bed at its own lag; more than that and the curves no longer look alike
+LARGEST_ERROR = 0.2
+# the maximum-likelihood estimate keeps the mean density, up to the first and the last frame
+END_FRAMES = 0.05
+
+
+@pytest.fixture(scope="module")
+def table(results):
+    """All rows."""
+    return pd.read_csv(results / "diagnostics.csv")
+
+
+@pytest.fixture(scope="module")
+def models(case):
+    """Names of the chains."""
+    return case["chain"]["models"]
+
+
+def part_of(table, quantity, source=None):
+    rows = table[table["quantity"] == quantity]
+    return rows if source is None else rows[rows["source"] == source]
+
+
+def test_columns_units_and_values(table):
+    assert list(table.columns) == COLUMNS
+    assert np.isfinite(table["value"]).all()
+    assert set(table["unit"]) == {"1", "s", "m2/s"}
+    banded = table.dropna(subset=["ci_low", "ci_high"])
+    assert (banded["ci_low"] <= banded["ci_high"] + ROUND_OFF).all()
+
+
+def test_timescales_are_positive_and_fall(table, models, case):
+    for model in models:
+        rows = part_of(table, "implied_timescale", model)
+        assert rows["lag_s"].min() == pytest.approx(case["chain"]["lag_s"])
+        assert rows["lag_s"].nunique() >= 3
+        for _, scales in rows.groupby("lag_s"):
+            in_order = scales.assign(part=scales["part"].astype(int)).sort_values("part")["value"]
+            assert (in_order > 0).all() and (in_order.diff().dropna() <= DIGITS * in_order.max()).all()
+    assert part_of(table, "implied_timescale", "static")["ci_low"].notna().all()
+
+
+def test_mixing_time_belongs_to_the_slowest_process(table, models, case):
+    lag = case["chain"]["lag_s"]
+    for model in models:
+        scales = part_of(table, "implied_timescale", model)
+        slowest = scales.loc[np.isclose(scales["lag_s"], lag), "value"].max()
+        gap = 1 - np.exp(-lag / slowest)
+        assert part_of(table, "mixing_time", model)["value"].item() == pytest.approx(lag / gap, rel=1e-4)
+
+
+def test_one_step_of_a_pooled_static_chain_is_what_was_counted(table, case):
+    if case["chain"]["estimator"] != "pooled":
+        return
+    seen = part_of(table, "remaining_counted").set_index(["part", "time_s"])["value"]
+    steps = part_of(table, "remaining_propagated", "static")
+    for row in steps[np.isclose(steps["lag_s"], steps["time_s"])].itertuples():
+        assert row.value == pytest.approx(seen[row.part, row.time_s], abs=DIGITS)
+
+
+def test_chapman_kolmogorov_errors_are_small_and_in_their_bands(table, models, case):
+    for model in models:
+        rms = part_of(table, "chapman_kolmogorov_rms", model)
+        own = rms[np.isclose(rms["lag_s"], case["chain"]["lag_s"])].set_index("part")
+        assert set(own.index) == set(GROUPS)
+        assert (own["value"] < LARGEST_ERROR).all()
+        mean = part_of(table, "chapman_kolmogorov_mean", model)
+        both = mean.merge(rms, on=["lag_s", "part"], suffixes=("_mean", ""))
+        assert (both["value_mean"].abs() <= both["value"] + DIGITS).all()
+
+
+def test_shares_still_on_their_side_are_shares(table):
+    for quantity in ("remaining_counted", "remaining_propagated", "first_passage_share"):
+        assert part_of(table, quantity)["value"].between(0, 1).all()
+
+
+def test_residence_times_are_a_step_or_more_and_in_order(table, models, case):
+    for model in models:
+        times = part_of(table, "residence_time", model).set_index("part")["value"]
+        assert case["chain"]["lag_s"] * (1 - DIGITS) <= times["shortest"] <= times["mean"] <= times["longest"]
+        passage = part_of(table, "first_passage_time", model)["value"]
+        assert (passage > times["shortest"]).all()
+
+
+def test_only_the_literal_estimator_leaks_and_the_pooled_one_keeps_the_density(table, models):
+    for model in models:
+        leak, error, distance = (
+            part_of(table, name, model).set_index("part")["value"]
+            for name in ("leak", "row_sum_error", "long_run_total_variation")
+        )
+        assert set(leak.index) == set(ESTIMATORS)
+        assert leak["literal"] > 0 and leak["per_step"] == leak["pooled"] == 0
+        assert error["literal"] > 0 and max(error["per_step"], error["pooled"]) < ROUND_OFF
+        assert distance.between(0, 1).all()
+        assert distance["pooled"] == distance.min() and distance["pooled"] < END_FRAMES
+
+
+def test_lacey_index_goes_from_apart_to_mixed(table, models):
+    for source in ("dem", *models):
+        for direction in ("radial", "axial"):
+            rows = part_of(table, "lacey_index", source)
+            curve = rows[rows["part"] == direction].sort_values("time_s")["value"]
+            assert curve.iloc[0] == pytest.approx(0, abs=0.01)
+            assert curve.iloc[-1] > 0.5 and curve.max() < 1.05
+
+
+def test_dispersion_is_positive_in_every_layer(table, models):
+    for axis in "xz":
+        rows = part_of(table, f"dispersion_{axis}")
+        assert set(rows["source"]) == {"dem", "dem_cells", *models}
+        assert (rows["value"] > 0).all()
+        # one step of the static chain from one start moves particles about as far as the frames it knows
+        step = rows[np.isclose(rows["lag_s"], rows["lag_s"].min())].pivot_table(
+            index="height_m", columns="source", values="value"
+        )
+        assert (step["static"] / step["dem_cells"]).median() == pytest.approx(1, abs=0.2)
+
+
+def test_difference_of_the_chains_is_a_distance(results, case):
+    table = pd.read_csv(results / "figures" / "fig_difference.csv")
+    by_moment = table.groupby("time_s")
+    assert list(by_moment.groups) == pytest.approx(case["figures"]["moments_s"])
+    half = 0.5 * by_moment["difference_1"].apply(lambda part: part.abs().sum())
+    assert half.to_numpy() == pytest.approx(by_moment["total_variation_1"].first().to_numpy(), abs=DIGITS)
+    assert half.between(0, 1).all() and (half > 0).all()

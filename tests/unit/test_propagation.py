@@ -1,0 +1,83 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+import numpy as np
+import pytest
+from scipy import sparse
+
+from bedchain import chains, mixing, models
+from bedchain.consistency import chapman_kolmogorov
+from bedchain.frames import DataError, Frames
+from bedchain.grid import Grid
+from bedchain.propagation import count_sides, count_starts, counted, propagated
+
+ROUND_OFF = 1e-12
+SPLITS = (0.02, 0.01)
+GRID = Grid(0.04, 0.03, 4, 3)
+
+
+def walk_frames(n_particles: int, steps: int, seed: int = 1) -> Frames:
+    """A chain that is Markov on the grid's cells, particles in their middles."""
+    rng = np.random.default_rng(seed)
+    dense = rng.random((12, 12)) ** 6 + np.eye(12)
+    matrix = sparse.csr_array(dense / dense.sum(axis=1, keepdims=True))
+    cells = chains.simulate(matrix, rng.integers(0, 12, n_particles), steps, rng)
+    x, z = np.moveaxis(GRID.centres_m[cells], -1, 0)
+    return Frames(np.arange(len(cells)) * 0.025, x, z, cells)
+
+
+def of_model(name: str, frames: Frames, lag: int, gaps: list[int], weights: np.ndarray) -> np.ndarray:
+    sides = count_sides(frames, *SPLITS, gaps)
+    chain = models.learn(name, frames, GRID, lag, "pooled", weights)
+    starts = count_starts(frames, GRID, sides, lag, chain.history)
+    rows, remaining = propagated(chain, starts, sides, weights)
+    assert rows.tolist() == [row for row, gap in enumerate(gaps) if gap % lag == 0]
+    return remaining
+
+
+def test_counted_shares_agree_with_a_plain_loop():
+    frames, gaps = walk_frames(40, 9), [1, 3, 4]
+    weights = np.array([2, 0, 1, 1, 3, 0, 0, 2, 1])
+    found = counted(count_sides(frames, *SPLITS, gaps), weights)
+    for row, gap in enumerate(gaps):
+        began, stayed = np.zeros(4), np.zeros(4)
+        for first in range(10 - gap):
+            for times in range(weights[first] if first < 9 else 0):
+                del times
+                now, later = (
+                    mixing.sides(frames.x_m[f], frames.z_m[f], *SPLITS) for f in (first, first + gap)
+                )
+                began += now.sum(axis=1)
+                stayed += (now & later).sum(axis=1)
+        assert found[row] == pytest.approx(stayed / began, abs=ROUND_OFF)
+
+
+@pytest.mark.parametrize("lag", [1, 2])
+def test_the_static_chain_gives_what_the_counts_alone_give(lag):
+    frames, multiples = walk_frames(300, 40), [1, 2, 5]
+    weights = np.random.default_rng(3).integers(0, 3, 41 - lag)
+    gaps = [lag * k for k in multiples]
+    theirs = chapman_kolmogorov(frames, GRID, *SPLITS, multiples, lag, step_weights=weights)
+    assert of_model("static", frames, lag, gaps, weights) == pytest.approx(theirs.predicted, abs=ROUND_OFF)
+
+
+def test_one_step_of_the_static_chain_is_what_the_frames_show():
+    frames, ones = walk_frames(300, 40), np.ones(39, int)
+    seen = counted(count_sides(frames, *SPLITS, [2]), ones)
+    assert of_model("static", frames, 2, [2], ones) == pytest.approx(seen, abs=ROUND_OFF)
+
+
+def test_one_step_of_the_dynamic_chain_is_what_the_frames_show_after_the_first_step():
+    frames, ones = walk_frames(300, 40), np.ones(40, int)
+    seen = counted(count_sides(frames.part(slice(1, None)), *SPLITS, [1]))
+    assert of_model("dynamic", frames, 1, [1], ones) == pytest.approx(seen, abs=ROUND_OFF)
+
+
+def test_a_markov_bed_is_followed_by_both_models():
+    frames, gaps = walk_frames(20_000, 40), [1, 4, 10]
+    seen = counted(count_sides(frames, *SPLITS, gaps))
+    for name in ("static", "dynamic"):
+        assert of_model(name, frames, 1, gaps, np.ones(40, int)) == pytest.approx(seen, abs=0.01)
+
+
+def test_a_gap_as_long_as_the_window_is_refused():
+    with pytest.raises(DataError, match="10 frames hold no two that are 10 apart"):
+        count_sides(walk_frames(5, 9), *SPLITS, [2, 10])
