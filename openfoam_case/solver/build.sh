@@ -7,7 +7,7 @@ set -eu
 output=${1:?usage: sh openfoam_case/solver/build.sh OUTPUT}
 sources=$(dirname "$0")/bedFoam
 headers=${OPENFOAM_HEADERS:-.openfoam/include}
-arch=$(dpkg-architecture -qDEB_HOST_MULTIARCH)
+arch=$(g++ -print-multiarch)
 
 if [ ! -e "$headers/finiteVolume/fvCFD.H" ]; then
     echo "error: OpenFOAM's headers are not in $headers: run envs/setup.sh" >&2

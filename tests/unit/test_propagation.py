@@ -71,6 +71,22 @@ def test_one_step_of_the_dynamic_chain_is_what_the_frames_show_after_the_first_s
     assert of_model("dynamic", frames, 1, [1], ones) == pytest.approx(seen, abs=ROUND_OFF)
 
 
+@pytest.mark.parametrize("name", ["static", "dynamic"])
+def test_weighted_starts_agree_with_a_plain_loop_over_frames(name):
+    frames, lag, gaps = walk_frames(60, 20), 2, [2, 6]
+    weights = np.random.default_rng(4).integers(0, 3, 19)
+    chain = models.learn(name, frames, GRID, lag, "pooled", weights)
+    before, start = (chain.history - 1) * lag, np.zeros((4, chain.matrix.shape[0]))
+    for frame in range(before, 19):
+        states = chain.states(frames.part(slice(frame - before, frame + 1)))
+        marked = mixing.sides(frames.x_m[frame], frames.z_m[frame], *SPLITS)
+        start += weights[frame] * mixing.marked_histogram(states, marked, start.shape[1])
+    on_side = mixing.side_shares(GRID, *SPLITS)[:, chain.cell_of_state]
+    later = [start @ np.linalg.matrix_power(chain.matrix.toarray(), gap // lag) for gap in gaps]
+    expected = [(now * on_side).sum(axis=1) / start.sum(axis=1) for now in later]
+    assert of_model(name, frames, lag, gaps, weights) == pytest.approx(np.array(expected), abs=ROUND_OFF)
+
+
 def test_a_markov_bed_is_followed_by_both_models():
     frames, gaps = walk_frames(20_000, 40), [1, 4, 10]
     seen = counted(count_sides(frames, *SPLITS, gaps))
