@@ -2,6 +2,8 @@
 
 #include "DemCoupling.H"
 
+#include <algorithm>
+
 namespace
 {
 
@@ -59,6 +61,11 @@ bedFoam::DemCoupling::DemCoupling
     checkSlabs();
     const Time& time = mesh.time();
     dem_.start(steps_*std::lround((time.endTime() - time).value()/interval_));
+    if (segment.get<label>("start_step") == 0)
+    {
+        // Before the first exchange nothing but drag is known to have acted
+        for (int i = 0; i < dem_.count(); ++i) std::copy_n(dem_.velocity()[i], 3, dem_.draggedVelocity()[i]);
+    }
 }
 
 bedFoam::SlabGrid bedFoam::DemCoupling::slab(const dictionary& parameters) const
@@ -185,6 +192,8 @@ void bedFoam::DemCoupling::depositDrag
         dragRate[cell] = perVolume*value[0];
         dragSource[cell] = perVolume*vector(value[1], value[2], value[3]);
     }
+    dragRate.correctBoundaryConditions();
+    dragSource.correctBoundaryConditions();
 }
 
 void bedFoam::DemCoupling::deposit
