@@ -39,7 +39,7 @@ def test_steps_and_cells_are_derived_as_whole_numbers(values):
         "gas_cells_x": 54,
         "gas_cells_y": 1,
         "gas_cells_z": 210,
-        "coupling_steps": 10,
+        "coupling_steps": 25,
         "frame_steps": 1250,
         "settle_steps": 25000,
     }
