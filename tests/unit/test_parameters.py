@@ -39,9 +39,9 @@ def test_steps_and_cells_are_derived_as_whole_numbers(values):
         "gas_cells_x": 54,
         "gas_cells_y": 1,
         "gas_cells_z": 210,
-        "coupling_steps": 25,
-        "frame_steps": 1250,
-        "settle_steps": 25000,
+        "coupling_steps": 16,
+        "frame_steps": 800,
+        "settle_steps": 16000,
     }
     for name, value in derived.items():
         assert values[name] == value and isinstance(values[name], int), name
