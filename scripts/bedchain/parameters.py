@@ -9,7 +9,7 @@ from bedchain.case_numbers import ratio
 
 GRAVITY_M_S2 = 9.81  # standard value, rounded; downwards along z
 SKIN_DIAMETERS = (
-    0.5  # neighbour skin: a list lasts until a particle has moved half of it; speed only, no physics
+    0.7  # neighbour skin: a list lasts until a particle has moved half of it; speed only, no physics
 )
 START_SPACING_DIAMETERS = 1.15  # of the loose lattice that the particles fall from: no contact at the start
 START_SPEED_M_S = 0.05  # random, breaks the lattice; forgotten after the fall
