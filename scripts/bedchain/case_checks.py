@@ -78,57 +78,33 @@ def seed_is_prime(seed: int) -> Iterator[Finding]:
         yield "seed", f"{seed} is not prime, and LIGGGHTS takes only primes above 10000", f"take {near}"
 
 
-@reads(
-    "bed.width_m",
-    "bed.height_m",
-    "bed.thickness_m",
-    "bed.layers",
-    "particles.diameter_m",
-    "particles.number",
-)
+BED_KEYS = ("bed.width_m", "bed.height_m", "bed.thickness_m", "bed.layers")
+
+
+@reads(*BED_KEYS, "particles.diameter_m", "particles.number")
 def particles_fit(
     width: float, height: float, thickness: float, layers: str, diameter: float, number: int
 ) -> Iterator[Finding]:
     """Refuse a bed narrower than a particle, or too low for all of them."""
-    for name, length in (("width_m", width), ("height_m", height), ("thickness_m", thickness)):
-        if length < diameter:
-            wrong = f"{length:g} m is narrower than a particle (particles.diameter_m {diameter:g} m)"
-            yield f"bed.{name}", wrong, "widen the bed or shrink the particles; both are in metres"
-    depth = thickness if layers == "many" else None
-    if min(width, height, thickness) < diameter:
+    many = layers == "many"
+    # Between walls the particles start from a lattice in three dimensions
+    across = START_SPACING_DIAMETERS * diameter if many else diameter
+    sizes = (("width_m", width, across), ("height_m", height, diameter), ("thickness_m", thickness, across))
+    narrow = [(name, length, least) for name, length, least in sizes if length < least]
+    for name, length, least in narrow:
+        wrong = f"{length:g} m is narrower than a particle (particles.diameter_m {diameter:g} m)"
+        if length >= diameter:
+            wrong = f"{length:g} m is narrower than the lattice that particles start from ({least:g} m)"
+        yield f"bed.{name}", wrong, "widen the bed or shrink the particles; both are in metres"
+    if narrow:
         return
-    settled = settled_height(number, diameter, width, depth)
-    if settled > FILLED_HEIGHT_MAX * height:
-        most = int(number * FILLED_HEIGHT_MAX * height / settled)
+    settled = settled_height(number, diameter, width, thickness if many else None)
+    started = start_height(number, diameter, width, thickness) if many else 0
+    needed = max(settled / FILLED_HEIGHT_MAX, started)
+    if needed > height:
         wrong = f"{number} settle about {settled:.3g} m deep in a bed {height:g} m high"
-        needed = settled / FILLED_HEIGHT_MAX
+        most = int(number * height / needed)
         yield "particles.number", wrong, f"take at most {most}, or raise bed.height_m to {needed:.3g}"
-
-
-@reads(
-    "bed.width_m",
-    "bed.height_m",
-    "bed.thickness_m",
-    "bed.layers",
-    "particles.diameter_m",
-    "particles.number",
-)
-def lattice_fits(
-    width: float, height: float, thickness: float, layers: str, diameter: float, number: int
-) -> Iterator[Finding]:
-    """Refuse a bed that has no room for the loose lattice that its particles fall from."""
-    if layers != "many":
-        return
-    spacing = START_SPACING_DIAMETERS * diameter
-    tight = [name for name, length in (("width_m", width), ("thickness_m", thickness)) if length < spacing]
-    for name in tight:
-        wrong = f"{'bed.' + name} is narrower than the lattice that particles start from ({spacing:g} m)"
-        yield f"bed.{name}", wrong, f"take at least {spacing:g} m"
-    if tight or start_height(number, diameter, width, thickness) <= height:
-        return
-    needed = start_height(number, diameter, width, thickness)
-    wrong = f"{number} start on a lattice {needed:.3g} m high, in a bed {height:g} m high"
-    yield "particles.number", wrong, f"take fewer, or raise bed.height_m to {needed:.3g}"
 
 
 @reads(
