@@ -267,6 +267,34 @@ rule diagnose_chains:
         "scripts/diagnose_chains.py"
 
 
+# Against measured profiles, where a case has them: snakemake --cores 2 --config case=mueller validate
+rule validate:
+    input:
+        f"{RESULTS}/validation.csv",
+
+
+rule validate_bed:
+    input:
+        modules("figures", "frames", "stage", "trajectory", "validation"),
+        **TRAJECTORY,
+        points=f"cases/{NAME}/measured.csv",
+    output:
+        multiext(f"{FIGURES}/fig_validation", **FORMS),
+        table=f"{RESULTS}/validation.csv",
+        metrics=f"{RESULTS}/validation_metrics.csv",
+    log:
+        f"{LOGS}/validate_bed.log",
+    conda:
+        "envs/python.yaml"
+    params:
+        **pick(CASE, "bed.width_m", "bed.thickness_m", "particles.diameter_m"),
+        **pick(CASE, "figures.resolution_dpi"),
+        start_s=CASE["learning"]["start_s"],
+        end_s=CASE["comparison"]["end_s"],
+    script:
+        "scripts/validate_bed.py"
+
+
 # Alone on the machine, since it measures times.
 rule time_models:
     input:

@@ -26,6 +26,7 @@ from bedchain.segments import (
     check_frames,
     exclusive,
     finished_segments,
+    frame_columns,
     input_stamp,
     manifest,
     read_parameters,
@@ -40,7 +41,6 @@ GAS_CASE = Path("openfoam_case")
 GAS_PARTS = ["0.orig", "constant", "system"]
 ROW_EVERY = 10  # gas steps between two rows of bed_series.csv
 BYTES_PER_PARTICLE = 500  # of LIGGGHTS's restart, with its contact history (480 measured)
-COLUMNS_WRITTEN = 5  # of a frame: id, x, z, vx, vz
 
 
 def input_files(folder: Path) -> list[Path]:
@@ -169,7 +169,7 @@ def run_dem(folder: Path, end_s: float, segment_s: float, ranks: int) -> None:
         segments = finished_segments(run)
         while (start := segments[-1].end_step if segments else 0) < end_step:
             stop = min(start + segment_steps, end_step)
-            frame_bytes = 8 * COLUMNS_WRITTEN * (stop - start) // frame_steps
+            frame_bytes = 8 * len(frame_columns(parameters)) * (stop - start) // frame_steps
             require_disk(folder, int(parameters["number"]) * (BYTES_PER_PARTICLE + frame_bytes))
             segments.append(run_segment(folder, run, len(segments) + 1, (start, stop), ranks, end_s))
         write_results(folder, stamp, segments, end_step, ranks)

@@ -47,6 +47,29 @@ def test_steps_and_cells_are_derived_as_whole_numbers(values):
         assert values[name] == value and isinstance(values[name], int), name
 
 
+def test_one_layer_has_no_walls_across_and_gas_in_two_dimensions(values):
+    assert (values["depth_walls"], values["gas_cells_y"], values["faces_type"]) == (0, 1, "empty")
+
+
+def test_many_layers_have_walls_and_whole_gas_cells_across():
+    case = load_case(ROOT / "cases" / "mueller" / "case.yaml")
+
+    def given():
+        found = {parameter.name: parameter.value for parameter in solver_parameters(case, load_schema())}
+        return [found[name] for name in ("depth_walls", "slab_high", "gas_cells_y", "faces_type")]
+
+    assert given() == [1, 0.005, 4, "wall"]
+    case["gas"]["cell_size_m"] = 0.011
+    assert given() == [1, 0.005, 1, "empty"]
+
+
+def test_many_layers_take_more_disk():
+    case = load_case(ROOT / "cases" / "mueller" / "case.yaml")
+    thin = case | {"bed": case["bed"] | {"layers": "one"}}
+    columns = 2 * 8 * 9240 * 401  # y and vy of each particle and frame
+    assert run_bytes(case) - run_bytes(thin) > columns
+
+
 def test_lengths_of_time_that_may_grow_are_not_given_to_the_decks(values):
     assert not {"end", "end_time", "segment", "ranks"} & set(values)
 
