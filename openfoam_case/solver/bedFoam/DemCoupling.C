@@ -139,11 +139,13 @@ void bedFoam::DemCoupling::depositVolume(volScalarField& voidage)
     grid_.completeDeposit<1>(solids);
 
     clipped_ = 0;
+    leastVoidage_ = {1, -1};
     scalarField& values = voidage.primitiveFieldRef();
     forAll(values, cell)
     {
         const double value = 1 - solids[grid_.place(cell)][0]/grid_.cellVolume();
         if (value < smallestVoidage) ++clipped_;
+        if (value < leastVoidage_.first) leastVoidage_ = {value, cell};
         values[cell] = max(value, smallestVoidage);
     }
     reduce(clipped_, sumOp<label>());

@@ -2,13 +2,18 @@
 
 #include "Liggghts.H"
 
+#include <cmath>
+
 #include "atom.h"
 #include "domain.h"
 #include "fix_property_atom.h"
+#include "force.h"
 #include "input.h"
 #include "integrate.h"
 #include "lammps.h"
 #include "modify.h"
+#include "neigh_list.h"
+#include "pair.h"
 #include "timer.h"
 #include "update.h"
 
@@ -27,6 +32,8 @@ bedFoam::Liggghts::Liggghts
 
     dem_.reset(new LAMMPS_NS::LAMMPS(static_cast<int>(arguments.size()), arguments.data(), MPI_COMM_WORLD));
     dem_->input->file(deck.c_str());
+    // bedFoam counts the particles itself, and says where one was lost
+    command("thermo_modify lost ignore");
 
     const auto property = [this](const char* name, bool needed = true)
     {
@@ -77,6 +84,11 @@ int bedFoam::Liggghts::count() const
     return dem_->atom->nlocal;
 }
 
+long bedFoam::Liggghts::id(int particle) const
+{
+    return dem_->atom->tag[particle];
+}
+
 double** bedFoam::Liggghts::position() const
 {
     return dem_->atom->x;
@@ -114,6 +126,54 @@ double bedFoam::Liggghts::sideForce() const
         sum += onParticle;
     }
     return sum;
+}
+
+void bedFoam::Liggghts::deepestPair(Overlap& deepest) const
+{
+    const LAMMPS_NS::NeighList& list = *dem_->force->pair->list;
+    double** x = dem_->atom->x;
+    const double* radius = dem_->atom->radius;
+    for (int n = 0; n < list.inum; ++n)
+    {
+        const int i = list.ilist[n];
+        for (int m = 0; m < list.numneigh[i]; ++m)
+        {
+            const int j = list.firstneigh[i][m] & NEIGHMASK;
+            const double dx = x[i][0] - x[j][0], dy = x[i][1] - x[j][1], dz = x[i][2] - x[j][2];
+            const double reach = radius[i] + radius[j];
+            // The root only for a pair that is deeper than the deepest so far
+            const double apart = reach*(1 - deepest.depth);
+            const double squared = dx*dx + dy*dy + dz*dz;
+            if (squared < apart*apart)
+            {
+                deepest = {1 - std::sqrt(squared)/reach, {x[i][0], x[i][1], x[i][2]}, id(i), "particle " + std::to_string(id(j))};
+            }
+        }
+    }
+}
+
+void bedFoam::Liggghts::deepestAt(const Plane& wall, Overlap& deepest) const
+{
+    double** x = dem_->atom->x;
+    const double* radius = dem_->atom->radius;
+    for (int i = 0; i < count(); ++i)
+    {
+        const double depth = 0.5 - std::abs(x[i][wall.axis] - wall.position)/(2*radius[i]);
+        if (depth > deepest.depth) deepest = {depth, {x[i][0], x[i][1], x[i][2]}, id(i), "the wall " + wall.name};
+    }
+}
+
+bool bedFoam::Liggghts::hasFix(const std::string& name) const
+{
+    return dem_->modify->find_fix(name.c_str()) >= 0;
+}
+
+bedFoam::Overlap bedFoam::Liggghts::deepestOverlap(const std::vector<Plane>& walls) const
+{
+    Overlap deepest;
+    deepestPair(deepest);
+    for (const Plane& wall : walls) deepestAt(wall, deepest);
+    return deepest;
 }
 
 std::pair<double, double> bedFoam::Liggghts::slab() const
