@@ -17,6 +17,7 @@ FIGURES = f"results/{NAME}/figures"
 LOGS = f"logs/{NAME}"
 BENCHMARKS = f"benchmarks/{NAME}"
 MODELS = CASE["chain"]["models"]
+REPEATS = range(1, CASE["comparison"]["repeats"] + 1)
 FORMS = {form: f".{form}" for form in ["png", "pdf", "csv"]}
 TRAJECTORY = {"trajectory": f"{RESULTS}/trajectory.npy", "metadata": f"{RESULTS}/trajectory.json"}
 MODEL_FIGURES = {"static": "fig3_static", "dynamic": "fig4_dynamic"}
@@ -139,22 +140,70 @@ rule run_dem:
         " --ranks {threads} 2>&1 | tee {log} >&2"
 
 
+# Another realisation of the comparison window, from a state of the main run that was changed a little.
+rule repeat_dem:
+    input:
+        rules.write_parameters.output,
+        dem=rules.run_dem.output.dem,
+        solver=rules.build_solver.output.solver,
+        decks=["liggghts_inputs/in.perturb", "liggghts_inputs/in.fluidize"],
+        blocks=source_files("liggghts_inputs/include", "*.in"),
+    output:
+        dem=f"{RESULTS}/repeats/{{repeat}}/dem.json",
+        bed_series=f"{RESULTS}/repeats/{{repeat}}/bed_series.csv",
+    log:
+        f"{LOGS}/repeat_dem_{{repeat}}.log",
+    benchmark:
+        f"{BENCHMARKS}/repeat_dem_{{repeat}}.tsv"
+    conda:
+        "envs/python.yaml"
+    threads: CASE["run"]["ranks"]
+    params:
+        **pick(CASE, "comparison.start_s", "comparison.end_s", "time.segment_s"),
+        folder=RESULTS,
+    shell:
+        "python scripts/run_dem.py {params.folder} --repeat {wildcards.repeat} --start {params.start_s}"
+        " --end {params.end_s} --segment {params.segment_s} --ranks {threads} 2>&1 | tee {log} >&2"
+
+
+# Of the main run, and of each repeat in a folder of its own.
 rule parse_dumps:
     input:
         modules("stage", "trajectory"),
-        dem=rules.run_dem.output.dem,
+        dem=f"{RESULTS}/{{run}}dem.json",
     output:
-        **TRAJECTORY,
+        trajectory=f"{RESULTS}/{{run}}trajectory.npy",
+        metadata=f"{RESULTS}/{{run}}trajectory.json",
     log:
-        f"{LOGS}/parse_dumps.log",
+        f"{LOGS}/{{run}}parse_dumps.log",
     benchmark:
-        f"{BENCHMARKS}/parse_dumps.tsv"
+        f"{BENCHMARKS}/{{run}}parse_dumps.tsv"
+    wildcard_constraints:
+        run="(repeats/[0-9]+/)?",
     conda:
         "envs/python.yaml"
     params:
         **pick(CASE, "bed.width_m", "bed.height_m"),
     script:
         "scripts/parse_dumps.py"
+
+
+rule measure_mixing:
+    input:
+        modules("comparison", "frames", "mixing", "stage", "trajectory"),
+        trajectory=f"{RESULTS}/repeats/{{repeat}}/trajectory.npy",
+        metadata=f"{RESULTS}/repeats/{{repeat}}/trajectory.json",
+    output:
+        mixing=f"{RESULTS}/repeats/{{repeat}}/mixing.csv",
+    log:
+        f"{LOGS}/measure_mixing_{{repeat}}.log",
+    conda:
+        "envs/python.yaml"
+    params:
+        **pick(CASE, "comparison.start_s", "comparison.end_s", "mixing"),
+        source="dem_{repeat}",
+    script:
+        "scripts/measure_mixing.py"
 
 
 rule assign_cells:
@@ -210,7 +259,7 @@ rule run_chain:
     conda:
         "envs/python.yaml"
     params:
-        **pick(CASE, "comparison", "mixing", "chain.estimator", "chain.seed"),
+        **pick(CASE, "comparison.start_s", "comparison.end_s", "mixing", "chain.estimator", "chain.seed"),
         **pick(CASE, "figures.batch_height_m", "figures.moments_s"),
         learning=CASE["learning"],
     script:
@@ -219,11 +268,13 @@ rule run_chain:
 
 rule compare_mixing:
     input:
-        modules("cell_store", "comparison", "distribution", "errors", "frames", "mixing", "stage", "storage"),
+        modules("cell_store", "comparison", "distribution", "errors", "frames", "mixing", "noise", "stage"),
+        modules("storage"),
         **TRAJECTORY,
         cells=rules.assign_cells.output.cells,
         chains=expand(rules.run_chain.output.chain, model=MODELS),
         bed_series=rules.run_dem.output.bed_series,
+        repeats=expand(f"{RESULTS}/repeats/{{repeat}}/mixing.csv", repeat=REPEATS),
     output:
         mixing=f"{RESULTS}/mixing.csv",
         metrics=f"{RESULTS}/metrics.csv",
@@ -234,7 +285,8 @@ rule compare_mixing:
     conda:
         "envs/python.yaml"
     params:
-        **pick(CASE, "comparison", "mixing", "chain.models", "figures.batch_height_m"),
+        **pick(CASE, "comparison.start_s", "comparison.end_s", "mixing", "chain.models"),
+        **pick(CASE, "figures.batch_height_m"),
         bed_start_s=CASE["learning"]["start_s"],
         bed_end_s=CASE["comparison"]["end_s"],
         weight_Pa=weight_per_area(CASE),
@@ -262,7 +314,7 @@ rule diagnose_chains:
     params:
         **pick(CASE, "mixing", "chain.models", "chain.estimator", "chain.seed"),
         learning=CASE["learning"],
-        comparison=CASE["comparison"],
+        comparison=pick(CASE, "comparison.start_s", "comparison.end_s"),
     script:
         "scripts/diagnose_chains.py"
 
@@ -316,7 +368,7 @@ rule time_models:
     params:
         **pick(CASE, "mixing", "chain.models", "chain.estimator", "chain.seed"),
         learning=CASE["learning"],
-        comparison=CASE["comparison"],
+        comparison=pick(CASE, "comparison.start_s", "comparison.end_s"),
     script:
         "scripts/time_models.py"
 

@@ -236,6 +236,14 @@ def windows_lie_in_time(
         yield "comparison.start_s", wrong, f"take at least {learn_end:g}, or an earlier learning.end_s"
 
 
+@reads("comparison.repeats", "comparison.start_s", "time.segment_s")
+def repeats_start_at_a_segment(repeats: int, start: float, segment: float) -> Iterator[Finding]:
+    """Refuse repeats that would start within a segment: the state is kept at its end only."""
+    if repeats and not is_multiple(start, segment):
+        wrong = f"{repeats} repeats cannot start at comparison.start_s ({start:g} s), within a segment"
+        yield "comparison.repeats", wrong, f"take a time.segment_s that divides {start:g}, or 0 repeats"
+
+
 @reads(
     "chain.lag_s",
     "time.frame_interval_s",
