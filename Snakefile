@@ -95,6 +95,41 @@ rule verify_solver:
         "python scripts/verify_solver.py --solver {input.solver} --folder {params.folder} 2>&1 | tee {log} >&2"
 
 
+# bedFoam beside other codes on the same beds: snakemake --cores 2 peers --config peers='{repeats: 5, beds: paper}'
+rule peers:
+    input:
+        "results/peers/peers.csv",
+
+
+# Alone on the machine, since it measures times. Its finished runs are kept in results/peers/<bed>/.
+rule compare_peers:
+    input:
+        modules("case", "dumps", "errors", "figures", "parameters", "provenance", "segments"),
+        modules("solver_process", "stage"),
+        source_files("scripts/bedchain/peers", "*.py"),
+        source_files("peers", "*"),
+        "scripts/bedchain/verification/particle_files.py",
+        solver=rules.build_solver.output.solver,
+        decks=source_files("liggghts_inputs", "in.*", "include/*.in"),
+        gas=source_files("openfoam_case", "0.orig/*", "constant/*", "system/*"),
+    output:
+        table="results/peers/peers.csv",
+        ratios="results/peers/ratios.csv",
+        text="results/peers/peers.md",
+        figure=multiext("results/peers/figures/peers", ".png", ".pdf"),
+    log:
+        "logs/compare_peers.log",
+    conda:
+        "envs/python.yaml"
+    threads: workflow.cores or 1
+    params:
+        folder=subpath(output.table, parent=True),
+        options=" ".join(f"--{key} {value}" for key, value in config.get("peers", {}).items()),
+    shell:
+        "python scripts/compare_peers.py --solver {input.solver} --folder {params.folder} {params.options}"
+        " 2>&1 | tee {log} >&2"
+
+
 # The case file's own time does not count: only a key that the solvers need makes the particles run again.
 rule write_parameters:
     input:
