@@ -20,6 +20,7 @@ MODELS = CASE["chain"]["models"]
 REPEATS = range(1, CASE["comparison"]["repeats"] + 1)
 FORMS = {form: f".{form}" for form in ["png", "pdf", "csv"]}
 TRAJECTORY = {"trajectory": f"{RESULTS}/trajectory.npy", "metadata": f"{RESULTS}/trajectory.json"}
+CHAIN_FILES = {"best": "scores_best"}
 MODEL_FIGURES = {"static": "fig3_static", "dynamic": "fig4_dynamic"}
 PLOTS = [
     "fig1_cells",
@@ -32,6 +33,7 @@ PLOTS = [
     "fig_chapman_kolmogorov",
     "fig_timescales",
 ]
+SCORE_PLOTS = ["fig_pareto", "fig5_best", "fig_autocorrelation", "fig_distribution_best"]
 
 
 rule all:
@@ -468,9 +470,9 @@ rule plot_distribution:
     input:
         modules("cell_store", "diagnostics", "distribution", "figures", "grid", "stage"),
         cells=rules.assign_cells.output.cells,
-        chain=rules.run_chain.output.chain,
+        chain=lambda wildcards: f"{RESULTS}/{CHAIN_FILES.get(wildcards.model, f'chain_{wildcards.model}')}.npz",
     output:
-        multiext(f"{FIGURES}/{{figure,fig[34]}}_{{model,static|dynamic}}", **FORMS),
+        multiext(f"{FIGURES}/{{figure,fig[34]|fig_distribution}}_{{model,static|dynamic|best}}", **FORMS),
     log:
         f"{LOGS}/plot_distribution_{{figure}}_{{model}}.log",
     conda:
@@ -572,6 +574,93 @@ rule plot_timescales:
         colours={model: CASE["figures"][f"{model}_colour"] for model in MODELS},
     script:
         "scripts/plot_timescales.py"
+
+
+# Every model chosen by validation inside the learning window and tested once: snakemake --cores 2 scores
+rule scores:
+    input:
+        expand(f"{RESULTS}/{{name}}.csv", name=["scores", "selection"]),
+        expand(f"{FIGURES}/{{name}}{{form}}", name=SCORE_PLOTS, form=FORMS.values()),
+
+
+rule score_models:
+    input:
+        modules("candidates", "comparison", "errors", "frames", "grid", "held_out", "kept", "lagrangian"),
+        modules("model_styles", "models", "regrid", "runs", "score_rows", "selection", "stage", "starts"),
+        modules("storage", "trial"),
+        **TRAJECTORY,
+        repeats=source_files(f"{RESULTS}/repeats", "trajectory.npy"),
+    output:
+        scores=f"{RESULTS}/scores.csv",
+        selection=f"{RESULTS}/selection.csv",
+        mixing=f"{RESULTS}/scores_mixing.csv",
+        lagrangian=f"{RESULTS}/scores_lagrangian.csv",
+        best=f"{RESULTS}/scores_best.npz",
+    log:
+        f"{LOGS}/score_models.log",
+    benchmark:
+        f"{BENCHMARKS}/score_models.tsv"
+    conda:
+        "envs/python.yaml"
+    params:
+        **pick(CASE, "cells", "chain.lag_s", "chain.estimator", "chain.seed", "mixing"),
+        **pick(CASE, "particles.diameter_m", "figures.batch_height_m", "figures.moments_s"),
+        learning=CASE["learning"],
+        comparison=CASE["comparison"],
+    script:
+        "scripts/score_models.py"
+
+
+rule plot_pareto:
+    input:
+        modules("errors", "figures", "model_styles", "stage"),
+        scores=rules.score_models.output.scores,
+        selection=rules.score_models.output.selection,
+    output:
+        multiext(f"{FIGURES}/fig_pareto", **FORMS),
+    log:
+        f"{LOGS}/plot_pareto.log",
+    conda:
+        "envs/python.yaml"
+    params:
+        **pick(CASE, "figures.resolution_dpi"),
+        baseline_lag_s=CASE["chain"]["lag_s"],
+        baseline_cell_m=CASE["bed"]["width_m"] / CASE["cells"]["columns"],
+    script:
+        "scripts/plot_pareto.py"
+
+
+rule plot_best_mixing:
+    input:
+        modules("errors", "figures", "model_styles", "stage"),
+        mixing=rules.score_models.output.mixing,
+        selection=rules.score_models.output.selection,
+    output:
+        multiext(f"{FIGURES}/fig5_best", **FORMS),
+    log:
+        f"{LOGS}/plot_best_mixing.log",
+    conda:
+        "envs/python.yaml"
+    params:
+        **pick(CASE, "figures.resolution_dpi", "figures.dem_colour", "figures.static_colour"),
+    script:
+        "scripts/plot_best_mixing.py"
+
+
+rule plot_autocorrelation:
+    input:
+        modules("errors", "figures", "model_styles", "stage"),
+        lagrangian=rules.score_models.output.lagrangian,
+    output:
+        multiext(f"{FIGURES}/fig_autocorrelation", **FORMS),
+    log:
+        f"{LOGS}/plot_autocorrelation.log",
+    conda:
+        "envs/python.yaml"
+    params:
+        **pick(CASE, "figures.resolution_dpi", "figures.dem_colour"),
+    script:
+        "scripts/plot_autocorrelation.py"
 
 
 rule write_provenance:
