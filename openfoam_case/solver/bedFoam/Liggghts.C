@@ -35,19 +35,23 @@ bedFoam::Liggghts::Liggghts
     // bedFoam counts the particles itself, and says where one was lost
     command("thermo_modify lost ignore");
 
-    const auto property = [this](const char* name)
+    const auto property = [this](const char* name, bool needed = true)
     {
         return static_cast<LAMMPS_NS::FixPropertyAtom*>
         (
-            dem_->modify->find_fix_property(name, "property/atom", "vector", 0, 0, "bedFoam")
+            dem_->modify->find_fix_property(name, "property/atom", "vector", 0, 0, "bedFoam", needed)
         );
     };
     force_ = property("dragforce");
     dragged_ = property("draggedVelocity");
     // Kept by the walls' option store_force
     bottom_ = property("force_bottom");
-    left_ = property("force_left");
-    right_ = property("force_right");
+    sides_ = {property("force_left"), property("force_right")};
+    // Only where the bed is several particles thick
+    for (const char* name : {"force_front", "force_back"})
+    {
+        if (LAMMPS_NS::FixPropertyAtom* wall = property(name, false)) sides_.push_back(wall);
+    }
 }
 
 bedFoam::Liggghts::~Liggghts() = default;
@@ -115,7 +119,12 @@ double bedFoam::Liggghts::floorForce() const
 double bedFoam::Liggghts::sideForce() const
 {
     double sum = 0;
-    for (int i = 0; i < count(); ++i) sum += left_->array_atom[i][2] + right_->array_atom[i][2];
+    for (int i = 0; i < count(); ++i)
+    {
+        double onParticle = 0;
+        for (const LAMMPS_NS::FixPropertyAtom* wall : sides_) onParticle += wall->array_atom[i][2];
+        sum += onParticle;
+    }
     return sum;
 }
 

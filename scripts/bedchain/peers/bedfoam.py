@@ -1,0 +1,62 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""bedFoam on one rank and on two, with the project's own decks and gas."""
+
+from functools import partial
+from pathlib import Path
+
+import pandas as pd
+
+from bedchain.peers.bed import DECKS, GAS_CASE, OWN_DECKS, Bed, gas_case, write_inputs
+from bedchain.peers.outcome import Outcome, Peer
+from bedchain.solver_process import Progress, on_ranks, run_logged
+
+NO_RAMP_S = 1e-9  # full velocity from the first gas step on
+
+
+def run(bed: Bed, folder: Path, duration_s: float, solver: Path, ranks: int) -> Outcome:
+    """Run bedFoam at the case's full gas velocity, on so many ranks."""
+    steps = bed.dem_steps(duration_s)
+    write_inputs(bed, folder, frame_steps=steps, ramp_time=NO_RAMP_S)
+    end_s = round(bed.gas_steps(duration_s) * bed.value("gas_step"), 9)
+    settings: dict[str, object] = {
+        "ranks": ranks,
+        "start_time": 0,
+        "end_time": end_s,
+        "start_step": 0,
+        "row_every": 1,
+        "deck": DECKS / "verify/in.exchange",
+        "decks": DECKS,
+        "parameters": folder / "parameters.lig",
+        "restart": folder / "particles.data",
+        "output": folder,
+    }
+    gas = folder / "gas"
+    gas_case(GAS_CASE, gas, folder / "caseParameters", settings)
+    if ranks > 1:
+        run_logged(["decomposePar", "-case", str(gas)], gas / "mesh.log")
+    command = [str(solver), "-case", str(gas)] + (["-parallel"] if ranks > 1 else [])
+    report = Progress(end_s)
+    run_logged(on_ranks(command, ranks), folder / "bedFoam.log", report)
+    series = pd.read_csv(gas / "bed_series.csv")
+    spent, last = report.totals, series.iloc[-1]
+    return Outcome(
+        spent["simulated"],
+        spent["wall"],
+        int(last["particles_1"]),
+        steps,
+        float(last["mean_height_m"]),
+        float(series["pressure_drop_Pa"].iloc[len(series) // 2 :].mean()),
+        spent["dem"],
+        spent["exchange"],
+        spent["gas"],
+    )
+
+
+def peers(solver: Path) -> list[Peer]:
+    """bedFoam on one rank and on two."""
+    files = (solver, GAS_CASE / "0.orig", GAS_CASE / "constant", GAS_CASE / "system", *OWN_DECKS)
+    names = {1: "bedFoam", 2: "bedFoam, 2 ranks"}
+    return [
+        Peer(name, str(solver), "", True, "", partial(run, solver=solver, ranks=ranks), 2e-7, files, ranks)
+        for ranks, name in names.items()
+    ]
