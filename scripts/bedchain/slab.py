@@ -24,7 +24,7 @@ def slab_voidage(area_share: float, thickness_diameters: float) -> float:
 def converted_thickness(area_share: float) -> float:
     """Thickness that gives the voidage of Hoomans et al. 1996, Chem. Eng. Sci. 51, 99, in diameters [1].
 
-    They convert a voidage in the plane to one in space, ``1 - e = 2 / sqrt(pi sqrt(3)) (1 - e_plane)^1.5``. It
+    ``1 - e = 2 / sqrt(pi sqrt(3)) (1 - e_plane)^1.5`` converts a voidage in the plane to one in space. It
     makes of closest discs closest spheres, as `LAYER_DISTANCE` does, and of looser discs looser spheres.
 
     Parameters
@@ -39,7 +39,7 @@ def converted_thickness(area_share: float) -> float:
 def ergun_velocity(
     voidage: float, diameter: float, density: float, gas_density: float, viscosity: float
 ) -> float:
-    """Superficial velocity at which the pressure drop of Ergun 1952, Chem. Eng. Prog. 48, 89, lifts a bed [m/s].
+    """Superficial velocity that fluidizes a bed by Ergun 1952, Chem. Eng. Prog. 48, 89 [m/s].
 
     Parameters
     ----------
@@ -67,7 +67,6 @@ def fluidization_line(case: Case) -> str:
         return f"u_mf about {speed:.2f} m/s (Ergun, {PACKED_VOLUME_SHARE:g} of the volume packed)"
     thicknesses = {
         "bed.thickness_m": bed["thickness_m"] / diameter,
-        "one diameter": 1.0,
         "conversion of Hoomans et al. 1996": converted_thickness(PACKED_AREA_SHARE),
         "layers of closest packing": LAYER_DISTANCE,
     }

@@ -10,15 +10,16 @@ import pandas as pd
 import pytest
 
 import run_dem as stage
+from bedchain import gas_case
 from bedchain.errors import UserError
-from bedchain.segments import input_stamp
+from bedchain.segments import SETTLED, input_stamp
 from bedchain.verification.bench import Setup, run_gas
 from bedchain.verification.packing import lattice
 
 DEADLINE_S = 600  # a run that hangs; one that stops takes a second or two on an idle machine
 VECTOR = r"\((?P<x>\S+) \S+ (?P<z>\S+)\)"
 WIDTH, HEIGHT, DIAMETER = 0.02, 0.06, 1e-3
-END_S, SEGMENT_S = 0.06, 0.02
+END_S, SEGMENT_S, STEP_S = 0.06, 0.02, 2e-5
 LEAST_VOIDAGE = 0.2
 LARGEST = 0.5  # the default of contact.largest_overlap_1
 STOP = r"at (?P<time>\S+) s\. The last finished segment is intact"
@@ -41,19 +42,25 @@ def faulty_bed(make_bed, settled_once):
 
     def make(ranks, edits=(), **changes):
         if not (settled_once / "particles.restart").exists():
-            stage.settle(make_bed("healthy"), settled_once / "run", 1)
-            shutil.copytree(settled_once / "run" / "settled", settled_once, dirs_exist_ok=True)
+            run = run_of(make_bed("healthy"), 1)
+            stage.settle(run)
+            shutil.copytree(run.state / SETTLED, settled_once, dirs_exist_ok=True)
         folder = make_bed("faulty", **changes)
         file = folder / "caseParameters"
         for name, value in edits:
             text, found = re.subn(rf"^{name} \S+;", f"{name} {value};", file.read_text(), flags=re.M)
             assert found == 1
             file.write_text(text)
-        run = folder / "dem" / input_stamp(stage.input_files(folder), ranks)
-        shutil.copytree(settled_once, run / "settled", ignore=shutil.ignore_patterns("run"))
+        shutil.copytree(settled_once, run_of(folder, ranks).state / SETTLED)
         return folder
 
     return make
+
+
+def run_of(folder, ranks):
+    """The run that the command line makes of a folder."""
+    stamp = input_stamp(stage.input_files(folder), ranks)
+    return stage.Run(folder, folder, stamp, ranks, 0, round(END_S / STEP_S), SETTLED)
 
 
 def stopped(folder, ranks, pattern):
@@ -140,6 +147,7 @@ def test_a_pressure_that_is_not_solved_stops_the_run(faulty_bed, tmp_path, monke
     shutil.copytree(stage.GAS_CASE, case)
     with (case / "system" / "fvSolution").open("a") as stream:
         stream.write("solvers { p { maxIter 2; relTol 0; tolerance 1e-14; } }\n")
+    monkeypatch.setattr(gas_case, "GAS_CASE", case)
     monkeypatch.setattr(stage, "GAS_CASE", case)
     folder = faulty_bed(ranks)
     with pytest.raises(UserError) as error:

@@ -3,16 +3,18 @@
 
 import re
 import shutil
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
 import pandas as pd
 import pytest
 
-from bedchain.segments import input_stamp
+from bedchain.gas_case import last_time
+from bedchain.segments import SETTLED, input_stamp
 from bedchain.verification.bench import Setup, run_gas
 from bedchain.verification.packing import lattice
-from run_dem import input_files, last_time, run_dem, settle
+from run_dem import Run, input_files, run_dem, settle
 
 ROOT = Path(__file__).parents[2]
 LENGTHS = [0, 2, 3, 4]  # diameters
@@ -56,14 +58,16 @@ def after_one_exchange(make_bed, settled_once, length, cell, ranks):
         run={"ranks": ranks},
         time={"gas_step_s": STEP, "frame_interval_s": STEP, "segment_s": STEP},
     )
-    run = folder / "dem" / input_stamp(input_files(folder), ranks)
-    if not (settled_once / "settled").exists():
-        settle(folder, settled_once, 1)
-    shutil.copytree(settled_once / "settled", run / "settled")
+    run = Run(folder, folder, input_stamp(input_files(folder), ranks), ranks, 0, 1, SETTLED)
+    if not (settled_once / SETTLED).exists():
+        settle(replace(run, ranks=1))
+        shutil.copytree(run.state / SETTLED, settled_once / SETTLED)
+    elif not (run.state / SETTLED).exists():
+        shutil.copytree(settled_once / SETTLED, run.state / SETTLED)
     run_dem(folder, STEP, STEP, ranks)
     table = pd.read_csv(folder / "bed_series.csv")
     assert (table["voidage_clips_1"] == 0).all()
-    return voidage_rows(run / "segment_0001" / "gas", cell)
+    return voidage_rows(run.state / "segment_0001" / "gas", cell)
 
 
 @pytest.mark.parametrize("length", LENGTHS)

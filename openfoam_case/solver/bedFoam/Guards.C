@@ -112,8 +112,9 @@ void bedFoam::Guards::checkOverlap(const Liggghts& dem)
 
 void bedFoam::Guards::checkParticles(const Liggghts& dem)
 {
-    checkNumber(dem);
+    // A burst of overlaps throws particles out: it is the cause that is told
     checkOverlap(dem);
+    checkNumber(dem);
 }
 
 void bedFoam::Guards::checkVoidage(const DemCoupling& particles) const
