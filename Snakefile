@@ -76,7 +76,7 @@ rule verify:
 rule verify_solver:
     input:
         modules("case", "dumps", "errors", "figures", "gas_field", "parameters", "segments", "solver_process"),
-        modules("stage"),
+        modules("slab", "stage"),
         source_files("scripts/bedchain/verification", "*.py"),
         schema="cases/case.schema.yaml",
         solver=rules.build_solver.output.solver,

@@ -5,6 +5,7 @@ from collections.abc import Callable, Iterator
 from typing import Any
 
 from bedchain.case_numbers import (
+    LAYER_DISTANCE,
     START_SPACING_DIAMETERS,
     courant_number,
     is_multiple,
@@ -89,7 +90,8 @@ def particles_fit(
     many = layers == "many"
     # Between walls the particles start from a lattice in three dimensions
     across = START_SPACING_DIAMETERS * diameter if many else diameter
-    sizes = (("width_m", width, across), ("height_m", height, diameter), ("thickness_m", thickness, across))
+    thinnest = across if many else LAYER_DISTANCE * diameter
+    sizes = (("width_m", width, across), ("height_m", height, diameter), ("thickness_m", thickness, thinnest))
     narrow = [(name, length, least) for name, length, least in sizes if length < least]
     for name, length, least in narrow:
         wrong = f"{length:g} m is narrower than a particle (particles.diameter_m {diameter:g} m)"

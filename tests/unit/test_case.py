@@ -151,7 +151,7 @@ MISTAKES = [
     ("number: 7200", "number: 90000", "particles.number", "at most"),
     ("width_m: 0.09", "width_m: 9.0e-4", "bed.width_m", "narrower than a particle"),
     ("width_m: 0.09", "width_m: 0.09\n  layers: two", "bed.layers", "one, many"),
-    ("width_m: 0.09", "width_m: 0.09\n  thickness_m: 9.0e-4", "bed.thickness_m", "narrower than a particle"),
+    ("width_m: 0.09", "width_m: 0.09\n  thickness_m: 7.0e-4", "bed.thickness_m", "narrower than a particle"),
     (
         "width_m: 0.09",
         "width_m: 0.09\n  layers: many\n  thickness_m: 1.1e-3",
