@@ -2,12 +2,12 @@
 """The comparison with other codes: constants of their contact laws, their files and logs, the study."""
 
 import math
+import os
 import re
 from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
-import pandas as pd
 import pytest
 
 from bedchain.errors import UserError
@@ -15,7 +15,16 @@ from bedchain.parameters import Parameter
 from bedchain.peers import bedfoam, dpmfoam, lammps, liggghts
 from bedchain.peers.bed import Bed, with_numbers, write_inputs
 from bedchain.peers.outcome import Outcome, Peer
-from bedchain.peers.study import all_peers, compare, duration_for, missing, record_file, run_in_turns
+from bedchain.peers.plots import draw
+from bedchain.peers.study import (
+    all_peers,
+    busy_time,
+    compare,
+    duration_for,
+    missing,
+    record_file,
+    run_in_turns,
+)
 from bedchain.peers.table import markdown, ratios, summary
 
 ROOT = Path(__file__).parents[2]
@@ -223,6 +232,21 @@ def test_medians_and_ratios_by_hand(bed, tmp_path):
     assert "gas and exchange over DEM, one rank [1] | 0.167 | <= 0.2 | yes" in markdown(table, ratios(table))
 
 
+def test_time_of_other_programs():
+    # user, nice, system, idle, waiting, two interrupts, stolen; guests are in user
+    text = "cpu  100 10 20 5000 300 1 2 3 40 50\ncpu0 1 2 3\n"
+    assert busy_time(text) == pytest.approx(136 / os.sysconf("SC_CLK_TCK"))
+
+
+def test_a_busy_machine_is_told(bed, tmp_path):
+    peers = [code("bedFoam", [1.0], tmp_path / "x", [], gas=True)]
+    run = run_in_turns(bed, peers, tmp_path, 1, 0.01, 75.0, lambda line: None)[0]
+    quiet = summary([replace(run, others=0.1)], {"box": bed}, peers)
+    loud = summary([replace(run, others=0.9)], {"box": bed}, peers)
+    assert "other programs" not in markdown(quiet, ratios(quiet))
+    assert "other programs were at work during bedFoam" in markdown(loud, ratios(loud))
+
+
 def test_every_code_names_its_files_and_its_program():
     peers = all_peers(ROOT / "results/bin/bedFoam")
     assert [peer.name for peer in peers] == [
@@ -249,10 +273,8 @@ def test_packages_of_the_codes_stand_in_one_file():
     assert needed <= {*listed, *base} and not {*filter(None, listed)} & {*base}
 
 
-def test_the_table_can_be_read_back(bed, tmp_path):
-    calls = []
-    peers = [code("bedFoam", [1.0], tmp_path / "x", calls, gas=True)]
+def test_the_table_can_be_drawn(bed, tmp_path):
+    peers = [code("bedFoam", [1.0], tmp_path / "x", [], gas=True), code("alone", [0.5], tmp_path / "x", [])]
     runs = run_in_turns(bed, peers, tmp_path, 1, 0.01, 75.0, lambda line: None)
-    file = tmp_path / "peers.csv"
-    summary(runs, {"box": bed}, peers).to_csv(file, index=False)
-    assert pd.read_csv(file)["wall_s_per_simulated_s"].tolist() == [100.0]
+    draw(summary(runs, {"box": bed}, peers), tmp_path / "figures" / "peers")
+    assert {file.name for file in (tmp_path / "figures").iterdir()} == {"peers.png", "peers.pdf"}
