@@ -54,7 +54,7 @@ def bed():
     return Bed("box", [Parameter(name, value, "-", "test") for name, value in NUMBERS.items()], PARTICLES)
 
 
-def code(name, costs, folder, calls, gas=False, fails=False):
+def code(name, costs, folder, calls, gas=False, fails=False, particles=3):
     """A code that takes the given wall times in turn, and notes its calls."""
 
     def run(bed, work, duration_s):
@@ -63,7 +63,9 @@ def code(name, costs, folder, calls, gas=False, fails=False):
             raise UserError(f"{name} has stopped\nits log: somewhere")
         work.mkdir(parents=True)
         wall = costs[calls.count(name) - 1]
-        return Outcome(duration_s, wall, 3, bed.dem_steps(duration_s), 0.01, *([5.0, wall, 0.1, 0.1] * gas))
+        return Outcome(
+            duration_s, wall, particles, bed.dem_steps(duration_s), 0.01, *([5.0, wall, 0.1, 0.1] * gas)
+        )
 
     return Peer(name, "sh", "", gas, "", run, 1e-6, (folder,))
 
@@ -217,19 +219,21 @@ def test_a_code_that_is_not_there_or_fails_leaves_a_note_and_the_study_goes_on(b
 def test_medians_and_ratios_by_hand(bed, tmp_path):
     calls, own = [], tmp_path / "x"
     costs = {"bedFoam": [1.2, 9.0, 1.0], "bedFoam, 2 ranks": [0.8] * 3, "DPMFoam": [12.0, 60.0, 11.0]}
-    peers = [code(name, walls, own, calls, gas=True) for name, walls in costs.items()]
+    peers = [code(name, walls, own, calls, gas=True, particles=81_000) for name, walls in costs.items()]
     runs = run_in_turns(bed, peers, tmp_path, 3, 0.01, 75.0, lambda line: None)
     table = summary(runs, {"box": bed}, peers)
     row = table.set_index("code").loc["bedFoam"]
     assert row["wall_s_per_simulated_s"] == pytest.approx(120)
     assert (row["fastest_s_per_simulated_s"], row["slowest_s_per_simulated_s"]) == pytest.approx((100, 900))
-    assert row["particle_steps_per_s"] == pytest.approx(3 * 500 / 1.2)
+    assert row["particle_steps_per_s"] == pytest.approx(81_000 * 500 / 1.2)
     assert row["pressure_drop_per_weight_1"] == pytest.approx(5.0 / bed.weight_per_area)
     assert table["relative_to_bedfoam_1"].tolist() == pytest.approx([1, 0.8 / 1.2, 10])
     found = ratios(table).set_index("quantity")
     assert found["met"].tolist() == ["yes", "no", "yes", "", ""]
     assert found["value"].tolist() == pytest.approx([0.2 / 1.2, 1.5, 10, 1, 1])
     assert "gas and exchange over DEM, one rank [1] | 0.167 | <= 0.2 | yes" in markdown(table, ratios(table))
+    small = ratios(table.assign(particles=9000))
+    assert small["met"].eq("").all() and small["target"].eq("").all()
 
 
 def test_time_of_other_programs():
