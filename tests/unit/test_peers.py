@@ -268,6 +268,8 @@ def test_a_missing_solver_or_case_is_told(tmp_path, monkeypatch):
     (tmp_path / "bedFoam").touch()
     with pytest.raises(UserError, match="there is no case shorter"):
         compare(["shorter"], tmp_path, tmp_path / "bedFoam", 1, 0.01, 75.0)
+    with pytest.raises(UserError, match="--repeats 0: must be above 0"):
+        compare(["short"], tmp_path, tmp_path / "bedFoam", 0, 0.01, 75.0)
 
 
 def test_packages_of_the_codes_stand_in_one_file():

@@ -167,8 +167,11 @@ def compare(
     Raises
     ------
     UserError
-        There is no such case, no bedFoam, or another study is at work in the folder.
+        A number is not above 0, there is no such case, no bedFoam, or another study is at work in the folder.
     """
+    for key, value in {"repeats": repeats, "duration": duration_s, "longest": longest_s}.items():
+        if not value > 0:
+            raise UserError(f"--{key} {value}: must be above 0")
     if not solver.exists():
         raise UserError(f"there is no solver {solver}: run snakemake build_solver")
     found, runs = {}, []
