@@ -17,8 +17,10 @@ FIGURES = f"results/{NAME}/figures"
 LOGS = f"logs/{NAME}"
 BENCHMARKS = f"benchmarks/{NAME}"
 MODELS = CASE["chain"]["models"]
+REPEATS = range(1, CASE["comparison"]["repeats"] + 1)
 FORMS = {form: f".{form}" for form in ["png", "pdf", "csv"]}
 TRAJECTORY = {"trajectory": f"{RESULTS}/trajectory.npy", "metadata": f"{RESULTS}/trajectory.json"}
+CHAIN_FILES = {"best": "scores_best"}
 MODEL_FIGURES = {"static": "fig3_static", "dynamic": "fig4_dynamic"}
 PLOTS = [
     "fig1_cells",
@@ -31,6 +33,7 @@ PLOTS = [
     "fig_chapman_kolmogorov",
     "fig_timescales",
 ]
+SCORE_PLOTS = ["fig_pareto", "fig5_best", "fig_autocorrelation", "fig_distribution_best"]
 
 
 rule all:
@@ -174,22 +177,70 @@ rule run_dem:
         " --ranks {threads} 2>&1 | tee {log} >&2"
 
 
+# Another realisation of the comparison window, from a state of the main run that was changed a little.
+rule repeat_dem:
+    input:
+        rules.write_parameters.output,
+        dem=rules.run_dem.output.dem,
+        solver=rules.build_solver.output.solver,
+        decks=["liggghts_inputs/in.perturb", "liggghts_inputs/in.fluidize"],
+        blocks=source_files("liggghts_inputs/include", "*.in"),
+    output:
+        dem=f"{RESULTS}/repeats/{{repeat}}/dem.json",
+        bed_series=f"{RESULTS}/repeats/{{repeat}}/bed_series.csv",
+    log:
+        f"{LOGS}/repeat_dem_{{repeat}}.log",
+    benchmark:
+        f"{BENCHMARKS}/repeat_dem_{{repeat}}.tsv"
+    conda:
+        "envs/python.yaml"
+    threads: CASE["run"]["ranks"]
+    params:
+        **pick(CASE, "comparison.start_s", "comparison.end_s", "time.segment_s"),
+        folder=RESULTS,
+    shell:
+        "python scripts/run_dem.py {params.folder} --repeat {wildcards.repeat} --start {params.start_s}"
+        " --end {params.end_s} --segment {params.segment_s} --ranks {threads} 2>&1 | tee {log} >&2"
+
+
+# Of the main run, and of each repeat in a folder of its own.
 rule parse_dumps:
     input:
         modules("stage", "trajectory"),
-        dem=rules.run_dem.output.dem,
+        dem=f"{RESULTS}/{{run}}dem.json",
     output:
-        **TRAJECTORY,
+        trajectory=f"{RESULTS}/{{run}}trajectory.npy",
+        metadata=f"{RESULTS}/{{run}}trajectory.json",
     log:
-        f"{LOGS}/parse_dumps.log",
+        f"{LOGS}/{{run}}parse_dumps.log",
     benchmark:
-        f"{BENCHMARKS}/parse_dumps.tsv"
+        f"{BENCHMARKS}/{{run}}parse_dumps.tsv"
+    wildcard_constraints:
+        run="(repeats/[0-9]+/)?",
     conda:
         "envs/python.yaml"
     params:
         **pick(CASE, "bed.width_m", "bed.height_m"),
     script:
         "scripts/parse_dumps.py"
+
+
+rule measure_mixing:
+    input:
+        modules("comparison", "frames", "mixing", "stage", "trajectory"),
+        trajectory=f"{RESULTS}/repeats/{{repeat}}/trajectory.npy",
+        metadata=f"{RESULTS}/repeats/{{repeat}}/trajectory.json",
+    output:
+        mixing=f"{RESULTS}/repeats/{{repeat}}/mixing.csv",
+    log:
+        f"{LOGS}/measure_mixing_{{repeat}}.log",
+    conda:
+        "envs/python.yaml"
+    params:
+        **pick(CASE, "comparison.start_s", "comparison.end_s", "mixing"),
+        source="dem_{repeat}",
+    script:
+        "scripts/measure_mixing.py"
 
 
 rule assign_cells:
@@ -245,7 +296,7 @@ rule run_chain:
     conda:
         "envs/python.yaml"
     params:
-        **pick(CASE, "comparison", "mixing", "chain.estimator", "chain.seed"),
+        **pick(CASE, "comparison.start_s", "comparison.end_s", "mixing", "chain.estimator", "chain.seed"),
         **pick(CASE, "figures.batch_height_m", "figures.moments_s"),
         learning=CASE["learning"],
     script:
@@ -254,11 +305,13 @@ rule run_chain:
 
 rule compare_mixing:
     input:
-        modules("cell_store", "comparison", "distribution", "errors", "frames", "mixing", "stage", "storage"),
+        modules("cell_store", "comparison", "distribution", "errors", "frames", "mixing", "noise", "stage"),
+        modules("storage"),
         **TRAJECTORY,
         cells=rules.assign_cells.output.cells,
         chains=expand(rules.run_chain.output.chain, model=MODELS),
         bed_series=rules.run_dem.output.bed_series,
+        repeats=expand(f"{RESULTS}/repeats/{{repeat}}/mixing.csv", repeat=REPEATS),
     output:
         mixing=f"{RESULTS}/mixing.csv",
         metrics=f"{RESULTS}/metrics.csv",
@@ -269,7 +322,8 @@ rule compare_mixing:
     conda:
         "envs/python.yaml"
     params:
-        **pick(CASE, "comparison", "mixing", "chain.models", "figures.batch_height_m"),
+        **pick(CASE, "comparison.start_s", "comparison.end_s", "mixing", "chain.models"),
+        **pick(CASE, "figures.batch_height_m"),
         bed_start_s=CASE["learning"]["start_s"],
         bed_end_s=CASE["comparison"]["end_s"],
         weight_Pa=weight_per_area(CASE),
@@ -297,9 +351,37 @@ rule diagnose_chains:
     params:
         **pick(CASE, "mixing", "chain.models", "chain.estimator", "chain.seed"),
         learning=CASE["learning"],
-        comparison=CASE["comparison"],
+        comparison=pick(CASE, "comparison.start_s", "comparison.end_s"),
     script:
         "scripts/diagnose_chains.py"
+
+
+# Against measured profiles, where a case has them: snakemake --cores 2 --config case=mueller validate
+rule validate:
+    input:
+        f"{RESULTS}/validation.csv",
+
+
+rule validate_bed:
+    input:
+        modules("figures", "frames", "stage", "trajectory", "validation"),
+        **TRAJECTORY,
+        points=f"cases/{NAME}/measured.csv",
+    output:
+        multiext(f"{FIGURES}/fig_validation", **FORMS),
+        table=f"{RESULTS}/validation.csv",
+        metrics=f"{RESULTS}/validation_metrics.csv",
+    log:
+        f"{LOGS}/validate_bed.log",
+    conda:
+        "envs/python.yaml"
+    params:
+        **pick(CASE, "bed.width_m", "bed.thickness_m", "particles.diameter_m"),
+        **pick(CASE, "figures.resolution_dpi"),
+        start_s=CASE["learning"]["start_s"],
+        end_s=CASE["comparison"]["end_s"],
+    script:
+        "scripts/validate_bed.py"
 
 
 # Alone on the machine, since it measures times.
@@ -323,7 +405,7 @@ rule time_models:
     params:
         **pick(CASE, "mixing", "chain.models", "chain.estimator", "chain.seed"),
         learning=CASE["learning"],
-        comparison=CASE["comparison"],
+        comparison=pick(CASE, "comparison.start_s", "comparison.end_s"),
     script:
         "scripts/time_models.py"
 
@@ -388,9 +470,9 @@ rule plot_distribution:
     input:
         modules("cell_store", "diagnostics", "distribution", "figures", "grid", "stage"),
         cells=rules.assign_cells.output.cells,
-        chain=rules.run_chain.output.chain,
+        chain=lambda wildcards: f"{RESULTS}/{CHAIN_FILES.get(wildcards.model, f'chain_{wildcards.model}')}.npz",
     output:
-        multiext(f"{FIGURES}/{{figure,fig[34]}}_{{model,static|dynamic}}", **FORMS),
+        multiext(f"{FIGURES}/{{figure,fig[34]|fig_distribution}}_{{model,static|dynamic|best}}", **FORMS),
     log:
         f"{LOGS}/plot_distribution_{{figure}}_{{model}}.log",
     conda:
@@ -492,6 +574,93 @@ rule plot_timescales:
         colours={model: CASE["figures"][f"{model}_colour"] for model in MODELS},
     script:
         "scripts/plot_timescales.py"
+
+
+# Every model chosen by validation inside the learning window and tested once: snakemake --cores 2 scores
+rule scores:
+    input:
+        expand(f"{RESULTS}/{{name}}.csv", name=["scores", "selection"]),
+        expand(f"{FIGURES}/{{name}}{{form}}", name=SCORE_PLOTS, form=FORMS.values()),
+
+
+rule score_models:
+    input:
+        modules("candidates", "comparison", "errors", "frames", "grid", "held_out", "kept", "lagrangian"),
+        modules("model_styles", "models", "regrid", "runs", "score_rows", "selection", "stage", "starts"),
+        modules("storage", "trial"),
+        **TRAJECTORY,
+        repeats=source_files(f"{RESULTS}/repeats", "trajectory.npy"),
+    output:
+        scores=f"{RESULTS}/scores.csv",
+        selection=f"{RESULTS}/selection.csv",
+        mixing=f"{RESULTS}/scores_mixing.csv",
+        lagrangian=f"{RESULTS}/scores_lagrangian.csv",
+        best=f"{RESULTS}/scores_best.npz",
+    log:
+        f"{LOGS}/score_models.log",
+    benchmark:
+        f"{BENCHMARKS}/score_models.tsv"
+    conda:
+        "envs/python.yaml"
+    params:
+        **pick(CASE, "cells", "chain.lag_s", "chain.estimator", "chain.seed", "mixing"),
+        **pick(CASE, "particles.diameter_m", "figures.batch_height_m", "figures.moments_s"),
+        learning=CASE["learning"],
+        comparison=CASE["comparison"],
+    script:
+        "scripts/score_models.py"
+
+
+rule plot_pareto:
+    input:
+        modules("errors", "figures", "model_styles", "stage"),
+        scores=rules.score_models.output.scores,
+        selection=rules.score_models.output.selection,
+    output:
+        multiext(f"{FIGURES}/fig_pareto", **FORMS),
+    log:
+        f"{LOGS}/plot_pareto.log",
+    conda:
+        "envs/python.yaml"
+    params:
+        **pick(CASE, "figures.resolution_dpi"),
+        baseline_lag_s=CASE["chain"]["lag_s"],
+        baseline_cell_m=CASE["bed"]["width_m"] / CASE["cells"]["columns"],
+    script:
+        "scripts/plot_pareto.py"
+
+
+rule plot_best_mixing:
+    input:
+        modules("errors", "figures", "model_styles", "stage"),
+        mixing=rules.score_models.output.mixing,
+        selection=rules.score_models.output.selection,
+    output:
+        multiext(f"{FIGURES}/fig5_best", **FORMS),
+    log:
+        f"{LOGS}/plot_best_mixing.log",
+    conda:
+        "envs/python.yaml"
+    params:
+        **pick(CASE, "figures.resolution_dpi", "figures.dem_colour", "figures.static_colour"),
+    script:
+        "scripts/plot_best_mixing.py"
+
+
+rule plot_autocorrelation:
+    input:
+        modules("errors", "figures", "model_styles", "stage"),
+        lagrangian=rules.score_models.output.lagrangian,
+    output:
+        multiext(f"{FIGURES}/fig_autocorrelation", **FORMS),
+    log:
+        f"{LOGS}/plot_autocorrelation.log",
+    conda:
+        "envs/python.yaml"
+    params:
+        **pick(CASE, "figures.resolution_dpi", "figures.dem_colour"),
+    script:
+        "scripts/plot_autocorrelation.py"
 
 
 rule write_provenance:

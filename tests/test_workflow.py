@@ -24,6 +24,8 @@ ALL = {
         "build_solver",
         "write_parameters",
         "run_dem",
+        "repeat_dem",
+        "measure_mixing",
         "parse_dumps",
         "assign_cells",
         "build_transitions",
@@ -33,7 +35,9 @@ ALL = {
     *("plot_snapshot", "write_table", "write_provenance"),
     *("diagnose_chains", "plot_difference", "plot_chapman_kolmogorov", "plot_timescales"),
 }
-PARTICLES = {"build_solver", "write_parameters", "run_dem", "parse_dumps"}
+PARTICLES = {
+    *("build_solver", "write_parameters", "run_dem", "parse_dumps", "repeat_dem", "measure_mixing"),
+}
 WHOLE_BED = {"plot_snapshot"}  # needs particles and gas, no cells
 
 
@@ -156,6 +160,20 @@ def test_a_later_end_lets_the_particles_go_on_with_the_same_parameters(finished,
     assert set(planned(finished)) == ALL - {"build_solver", "write_parameters"}
 
 
+def test_another_repeat_runs_it_alone_and_what_compares(finished, case):
+    case("comparison", "repeats", "4")
+    jobs = planned(finished)
+    assert {rule: jobs.get(rule) for rule in ("repeat_dem", "parse_dumps", "measure_mixing")} == {
+        "repeat_dem": 1,
+        "parse_dumps": 1,
+        "measure_mixing": 1,
+    }
+    assert set(jobs) == {
+        *("repeat_dem", "parse_dumps", "measure_mixing", "compare_mixing", "plot_mixing"),
+        *("write_table", "write_provenance"),
+    }
+
+
 def test_another_estimator_leaves_the_cells_alone(finished, case):
     case("chain", "estimator", "per_step")
     assert set(planned(finished)) == ALL - PARTICLES - WHOLE_BED - {"assign_cells", "plot_cells"}
@@ -227,7 +245,7 @@ def test_a_seed_that_is_no_prime_stops_before_anything(finished, results):
 def test_an_unknown_case_is_told_the_known_ones(finished):
     done = snakemake(finished, "--config", "case=shorter")
     assert done.returncode != 0
-    assert "there is no case 'shorter'" in done.stderr and "paper, short" in done.stderr
+    assert "there is no case 'shorter'" in done.stderr and "mueller, paper, short" in done.stderr
 
 
 @pytest.fixture(scope="module")
@@ -249,7 +267,8 @@ def used_names(script: Path, kind: str) -> set[str]:
 
 
 def test_every_script_has_the_name_of_its_rule(rules):
-    assert set(rules) == ALL - {"build_solver", "write_parameters", "run_dem"}
+    without_own_name = {"build_solver", "write_parameters", "run_dem", "repeat_dem"}
+    assert set(rules) == (ALL | {"validate_bed"}) - without_own_name
     for name, rule in rules.items():
         assert rule.script == f"scripts/{name}.py"
 

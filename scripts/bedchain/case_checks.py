@@ -5,6 +5,7 @@ from collections.abc import Callable, Iterator
 from typing import Any
 
 from bedchain.case_numbers import (
+    START_SPACING_DIAMETERS,
     courant_number,
     is_multiple,
     is_prime,
@@ -13,6 +14,7 @@ from bedchain.case_numbers import (
     rayleigh_time,
     rounded_down,
     settled_height,
+    start_height,
 )
 from bedchain.errors import Problem
 
@@ -76,20 +78,32 @@ def seed_is_prime(seed: int) -> Iterator[Finding]:
         yield "seed", f"{seed} is not prime, and LIGGGHTS takes only primes above 10000", f"take {near}"
 
 
-@reads("bed.width_m", "bed.height_m", "bed.thickness_m", "particles.diameter_m", "particles.number")
+BED_KEYS = ("bed.width_m", "bed.height_m", "bed.thickness_m", "bed.layers")
+
+
+@reads(*BED_KEYS, "particles.diameter_m", "particles.number")
 def particles_fit(
-    width: float, height: float, thickness: float, diameter: float, number: int
+    width: float, height: float, thickness: float, layers: str, diameter: float, number: int
 ) -> Iterator[Finding]:
     """Refuse a bed narrower than a particle, or too low for all of them."""
-    for name, length in (("width_m", width), ("height_m", height), ("thickness_m", thickness)):
-        if length < diameter:
-            wrong = f"{length:g} m is narrower than a particle (particles.diameter_m {diameter:g} m)"
-            yield f"bed.{name}", wrong, "widen the bed or shrink the particles; both are in metres"
-    settled = settled_height(number, diameter, width)
-    if min(width, height) >= diameter and settled > FILLED_HEIGHT_MAX * height:
-        most = int(number * FILLED_HEIGHT_MAX * height / settled)
+    many = layers == "many"
+    # Between walls the particles start from a lattice in three dimensions
+    across = START_SPACING_DIAMETERS * diameter if many else diameter
+    sizes = (("width_m", width, across), ("height_m", height, diameter), ("thickness_m", thickness, across))
+    narrow = [(name, length, least) for name, length, least in sizes if length < least]
+    for name, length, least in narrow:
+        wrong = f"{length:g} m is narrower than a particle (particles.diameter_m {diameter:g} m)"
+        if length >= diameter:
+            wrong = f"{length:g} m is narrower than the lattice that particles start from ({least:g} m)"
+        yield f"bed.{name}", wrong, "widen the bed or shrink the particles; both are in metres"
+    if narrow:
+        return
+    settled = settled_height(number, diameter, width, thickness if many else None)
+    started = start_height(number, diameter, width, thickness) if many else 0
+    needed = max(settled / FILLED_HEIGHT_MAX, started)
+    if needed > height:
         wrong = f"{number} settle about {settled:.3g} m deep in a bed {height:g} m high"
-        needed = settled / FILLED_HEIGHT_MAX
+        most = int(number * height / needed)
         yield "particles.number", wrong, f"take at most {most}, or raise bed.height_m to {needed:.3g}"
 
 
@@ -220,6 +234,14 @@ def windows_lie_in_time(
             "the chain would be tested on what it learned"
         )
         yield "comparison.start_s", wrong, f"take at least {learn_end:g}, or an earlier learning.end_s"
+
+
+@reads("comparison.repeats", "comparison.start_s", "time.segment_s")
+def repeats_start_at_a_segment(repeats: int, start: float, segment: float) -> Iterator[Finding]:
+    """Refuse repeats that would start within a segment: the state is kept at its end only."""
+    if repeats and not is_multiple(start, segment):
+        wrong = f"{repeats} repeats cannot start at comparison.start_s ({start:g} s), within a segment"
+        yield "comparison.repeats", wrong, f"take a time.segment_s that divides {start:g}, or 0 repeats"
 
 
 @reads(

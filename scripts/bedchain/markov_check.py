@@ -109,7 +109,7 @@ def with_replicates(
     n_steps = len(frames.times_s) - lag
     one = np.ones(n_steps, np.int64)
     chain = markovian(relearn(one))
-    starts = count_starts(frames, chain.grid, sides, lag, chain.history)
+    starts = count_starts(frames, chain, sides)
     found = findings(chain, starts, sides, one)
     if chain.matrix.nnz > MOST_ENTRIES:
         return found, None
