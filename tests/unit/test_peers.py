@@ -13,7 +13,7 @@ import pytest
 from bedchain.errors import UserError
 from bedchain.parameters import Parameter
 from bedchain.peers import bedfoam, dpmfoam, lammps, liggghts
-from bedchain.peers.bed import Bed, with_numbers, write_inputs
+from bedchain.peers.bed import Bed, fluidized_bed, with_numbers, write_inputs
 from bedchain.peers.outcome import Outcome, Peer
 from bedchain.peers.plots import draw
 from bedchain.peers.study import (
@@ -270,6 +270,12 @@ def test_a_missing_solver_or_case_is_told(tmp_path, monkeypatch):
         compare(["shorter"], tmp_path, tmp_path / "bedFoam", 1, 0.01, 75.0)
     with pytest.raises(UserError, match="--repeats 0: must be above 0"):
         compare(["short"], tmp_path, tmp_path / "bedFoam", 0, 0.01, 75.0)
+
+
+def test_a_thick_bed_is_refused(tmp_path, monkeypatch):
+    monkeypatch.chdir(ROOT)
+    with pytest.raises(UserError, match="bed.layers: the comparison runs beds of one layer"):
+        fluidized_bed(ROOT / "cases/mueller/case.yaml", tmp_path, tmp_path / "bedFoam", 0.1)
 
 
 def test_packages_of_the_codes_stand_in_one_file():

@@ -3,13 +3,14 @@
 
 import math
 import re
+import shutil
 import time
 from pathlib import Path
 
 import numpy as np
 
 from bedchain.errors import UserError
-from bedchain.peers.bed import Bed, gas_case, write_inputs
+from bedchain.peers.bed import Bed, write_inputs
 from bedchain.peers.outcome import Outcome, Peer
 from bedchain.solver_process import run_logged
 
@@ -151,7 +152,10 @@ def run(bed: Bed, folder: Path, duration_s: float) -> Outcome:
     }
     write_inputs(bed, folder, **numbers)
     gas = folder / "gas"
-    gas_case(CASE, gas, folder / "caseParameters", {})
+    shutil.copytree(CASE, gas)
+    (gas / "0.orig").rename(gas / "0")
+    shutil.copy(folder / "caseParameters", gas)
+    run_logged(["blockMesh", "-case", str(gas)], gas / "mesh.log")
     write_cloud(bed, gas / "0")
     report = Report()
     run_logged(["DPMFoam", "-case", str(gas)], folder / "DPMFoam.log", report)
