@@ -106,7 +106,7 @@ rule peers:
 # Alone on the machine, since it measures times. Its finished runs are kept in results/peers/<bed>/.
 rule compare_peers:
     input:
-        modules("case", "dumps", "errors", "figures", "parameters", "provenance", "segments"),
+        modules("case", "dumps", "errors", "figures", "gas_case", "parameters", "provenance", "segments"),
         modules("solver_process", "stage"),
         source_files("scripts/bedchain/peers", "*.py"),
         source_files("peers", "*"),
