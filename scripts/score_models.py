@@ -79,7 +79,9 @@ def score_models(
     run = open_run("the run", trajectory, metadata)
     runs = [run, *open_repeats(repeats, run)]
     grid = Grid(run.width_m, run.height_m, columns, rows)
-    which, compared = (window(run.times_s, *part.values()) for part in (learning, comparison))
+    start_s, end_s = comparison["start_s"], comparison["end_s"]
+    which = window(run.times_s, learning["start_s"], learning["end_s"])
+    compared = window(run.times_s, start_s, end_s)
     if compared.start + 1 < which.stop:
         raise UserError("comparison.start_s is inside the learning window: take at least learning.end_s")
     splits, lag = (split_x_m, split_z_m), lag_frames(lag_s, run.interval_s)
@@ -91,7 +93,7 @@ def score_models(
     table = select(tried, run, which, task, kept)
     chosen = {one.model: one for one, mark in zip(tried, table["chosen"], strict=True) if mark}
     winner = table.loc[table["best"] == 1, "model"].item()
-    held = hold_out(runs, grid, tuple(comparison.values()), spacing, splits, batch_height_m, moments_s)
+    held = hold_out(runs, grid, (start_s, end_s), spacing, splits, batch_height_m, moments_s)
     LOG.info("%d starts, %d frames apart; %d repeats; noise floor: spread between %s", len(held.starts),
              spacing, len(repeats), "runs" if held.repeated else "starts")  # fmt: skip
     dem = [dem_statistics(held, number) for number in range(len(runs))]

@@ -66,6 +66,9 @@ class Settings:
 # a displacement to carry the velocity, and its pairs become too many to learn from at long lags.
 SETTINGS = {
     "dynamic": Settings(cells=(0.25, 0.5, 1), lags=(1, 2, 4)),
+    "velocity_class": Settings(
+        lags=(1, 2, 4), options=({"classes": [3, 3]}, {"classes": [5, 5]}, {"classes": [1, 5]})
+    ),
 }
 
 
