@@ -91,7 +91,7 @@ def score_models(
     about = {"task": repr(task), "learning": learning, "comparison": comparison}
     kept = only(scores.parent / "candidates" / stamp([trajectory, metadata], about))
     table = select(tried, run, which, task, kept)
-    chosen = {one.model: one for one, mark in zip(tried, table["chosen"], strict=True) if mark}
+    chosen = {one.name: one for one, mark in zip(tried, table["chosen"], strict=True) if mark}
     winner = table.loc[table["best"] == 1, "model"].item()
     held = hold_out(runs, grid, (start_s, end_s), spacing, splits, batch_height_m, moments_s)
     LOG.info("%d starts, %d frames apart; %d repeats; noise floor: spread between %s", len(held.starts),
@@ -102,7 +102,7 @@ def score_models(
     for name, one in {**chosen, BASELINE: Candidate("static", columns, rows, lag)}.items():
         LOG.info("test of %s: %s", name, one.key)
         trials[name] = try_out(one, which, held, task, seed)
-        if name != BASELINE or one.key != chosen["static"].key:
+        if name != BASELINE or one not in chosen.values():
             labels = named(one, grid, run.interval_s)
             found += [labels | row for row in score_rows(trials[name], held)]
     write_csv(table, selection)

@@ -240,7 +240,7 @@ def named(candidate: Candidate, case_grid: Grid, interval_s: float) -> Result:
     """The columns that say which candidate a row of a table is of."""
     grid = grid_of(candidate, case_grid)
     return {
-        "model": candidate.model,
+        "model": candidate.name,
         "cell_m": grid.cell_width_m,
         "lag_s": candidate.lag * interval_s,
         "options": candidate.options_text,
