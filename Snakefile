@@ -589,7 +589,7 @@ rule score_models:
         modules("model_styles", "models", "regrid", "runs", "score_rows", "selection", "stage", "starts"),
         modules("storage", "trial"),
         **TRAJECTORY,
-        repeats=source_files(f"{RESULTS}/repeats", "trajectory.npy"),
+        repeats=expand(f"{RESULTS}/repeats/{{repeat}}/trajectory.npy", repeat=REPEATS),
     output:
         scores=f"{RESULTS}/scores.csv",
         selection=f"{RESULTS}/selection.csv",
@@ -606,7 +606,7 @@ rule score_models:
         **pick(CASE, "cells", "chain.lag_s", "chain.estimator", "chain.seed", "mixing"),
         **pick(CASE, "particles.diameter_m", "figures.batch_height_m", "figures.moments_s"),
         learning=CASE["learning"],
-        comparison=CASE["comparison"],
+        comparison=pick(CASE, "comparison.start_s", "comparison.end_s"),
     script:
         "scripts/score_models.py"
 

@@ -38,6 +38,8 @@ ALL = {
 PARTICLES = {
     *("build_solver", "write_parameters", "run_dem", "parse_dumps", "repeat_dem", "measure_mixing"),
 }
+# of the target `scores` only
+SCORES = {"score_models", "plot_pareto", "plot_best_mixing", "plot_autocorrelation"}
 WHOLE_BED = {"plot_snapshot"}  # needs particles and gas, no cells
 
 
@@ -111,6 +113,16 @@ def test_everything_runs_in_an_empty_folder(finished, tmp_path):
         (tmp_path / name).parent.mkdir(parents=True, exist_ok=True)
         (tmp_path / name).symlink_to(finished / name)
     assert set(planned(tmp_path)) == ALL
+
+
+def test_scores_need_no_chain_of_the_comparison(finished, tmp_path):
+    for name in COPIED:
+        (tmp_path / name).parent.mkdir(parents=True, exist_ok=True)
+        (tmp_path / name).symlink_to(finished / name)
+    jobs = planned(tmp_path, "scores")
+    needed = PARTICLES - {"measure_mixing"} | {"assign_cells", "plot_distribution"}
+    assert set(jobs) - {"scores"} == SCORES | needed
+    assert jobs["plot_distribution"] == 1
 
 
 def test_a_comment_in_the_case_file_runs_nothing(finished, case):
@@ -268,7 +280,7 @@ def used_names(script: Path, kind: str) -> set[str]:
 
 def test_every_script_has_the_name_of_its_rule(rules):
     without_own_name = {"build_solver", "write_parameters", "run_dem", "repeat_dem"}
-    assert set(rules) == (ALL | {"validate_bed"}) - without_own_name
+    assert set(rules) == (ALL | SCORES | {"validate_bed"}) - without_own_name
     for name, rule in rules.items():
         assert rule.script == f"scripts/{name}.py"
 
