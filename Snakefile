@@ -17,13 +17,14 @@ FIGURES = f"results/{NAME}/figures"
 LOGS = f"logs/{NAME}"
 BENCHMARKS = f"benchmarks/{NAME}"
 MODELS = CASE["chain"]["models"]
+OPTIONS = {model: CASE["chain"].get(model, {}) for model in MODELS}
 FORMS = {form: f".{form}" for form in ["png", "pdf", "csv"]}
 TRAJECTORY = {"trajectory": f"{RESULTS}/trajectory.npy", "metadata": f"{RESULTS}/trajectory.json"}
 MODEL_FIGURES = {"static": "fig3_static", "dynamic": "fig4_dynamic"}
 PLOTS = [
     "fig1_cells",
     "fig2_cost",
-    *map(MODEL_FIGURES.get, MODELS),
+    *(MODEL_FIGURES[model] for model in MODELS if model in MODEL_FIGURES),
     "fig5a_radial",
     "fig5b_axial",
     "snapshot",
@@ -190,6 +191,7 @@ rule build_transitions:
         "envs/python.yaml"
     params:
         **pick(CASE, "learning", "chain.lag_s", "chain.estimator"),
+        options=lambda wildcards: OPTIONS[wildcards.model],
     script:
         "scripts/build_transitions.py"
 
@@ -212,6 +214,7 @@ rule run_chain:
     params:
         **pick(CASE, "comparison", "mixing", "chain.estimator", "chain.seed"),
         **pick(CASE, "figures.batch_height_m", "figures.moments_s"),
+        options=lambda wildcards: OPTIONS[wildcards.model],
         learning=CASE["learning"],
     script:
         "scripts/run_chain.py"
@@ -261,6 +264,7 @@ rule diagnose_chains:
         "envs/python.yaml"
     params:
         **pick(CASE, "mixing", "chain.models", "chain.estimator", "chain.seed"),
+        options=OPTIONS,
         learning=CASE["learning"],
         comparison=CASE["comparison"],
     script:
@@ -287,6 +291,7 @@ rule time_models:
     threads: workflow.cores or 1
     params:
         **pick(CASE, "mixing", "chain.models", "chain.estimator", "chain.seed"),
+        options=OPTIONS,
         learning=CASE["learning"],
         comparison=CASE["comparison"],
     script:
