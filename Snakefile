@@ -248,7 +248,7 @@ rule compare_mixing:
 rule diagnose_chains:
     input:
         modules(
-            "blocks", "cell_store", "counting", "diagnosis", "estimators", "frames", "grid", "markov_chain"
+            "blocks", "cell_store", "counting", "diagnosis", "diagnostics", "estimators", "frames", "grid", "markov_chain"
         ),
         modules("markov_check", "mixing", "models", "passage", "propagation", "stage"),
         **TRAJECTORY,

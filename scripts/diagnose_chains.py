@@ -11,7 +11,17 @@ from bedchain import models
 from bedchain.blocks import block_length
 from bedchain.cell_store import frames_up_to, open_cells, window_frames
 from bedchain.counting import count_moves
-from bedchain.diagnosis import Row, arrival_row, dispersion_rows, estimator_rows, lacey_rows, table, time_rows
+from bedchain.diagnosis import (
+    Row,
+    arrival_row,
+    dispersion_rows,
+    estimator_rows,
+    lacey_rows,
+    row,
+    table,
+    time_rows,
+)
+from bedchain.diagnostics import total_variation
 from bedchain.estimators import visited_density
 from bedchain.frames import Frames, lag_frames
 from bedchain.grid import Grid
@@ -30,6 +40,8 @@ FOLLOWED_SHARE = 0.5
 LACEY_MOMENTS = 40
 # every other one of the lags is enough for dispersion coefficients
 DISPERSION_STRIDE = 2
+# their long-run densities come with the comparison of the estimators
+PAPER_MODELS = ("static", "dynamic")
 REPORTED = ("mixing_time", "long_run_total_variation", "chapman_kolmogorov_rms")
 
 
@@ -87,6 +99,10 @@ def diagnose_chains(
     rows += dispersion_rows("dem_cells", known, store.grid, lags[::DISPERSION_STRIDE])
     before = frames_up_to(trajectory, metadata, store, learning["start_s"], lag)
     for name, chain in chains.items():
+        if name not in PAPER_MODELS:
+            distance = total_variation(chain.long_run_density(before), density)
+            where = {"lag_s": chain.lag_s, "part": estimator}
+            rows.append(row("long_run_total_variation", name, distance, **where))
         if name in with_matrix:
             matrix_chain = with_matrix[name]
             held = np.bincount(matrix_chain.states(before), minlength=matrix_chain.matrix.shape[0])

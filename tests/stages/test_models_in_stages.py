@@ -119,5 +119,7 @@ def test_timescales_are_given_of_models_with_a_matrix(bed, chains, tmp_path):
     assert (assert_drawn(tmp_path, "ts")["timescale_s"] > 0).all()
     plot_chapman_kolmogorov(path, *outputs(tmp_path, "ck"), {"dem": "black"} | colours, DPI)
     assert_drawn(tmp_path, "ck")
+    distance = table.query("quantity == 'long_run_total_variation'").set_index("source")["value"]
+    assert set(distance.index) == set(names) and distance.between(0, 0.3).all()
     shares = table.query("quantity == 'first_passage_share'")
     assert len(shares) == 1 + len(names) and (shares["value"].between(0, 1)).all()
