@@ -18,6 +18,7 @@ LOGS = f"logs/{NAME}"
 BENCHMARKS = f"benchmarks/{NAME}"
 MODELS = CASE["chain"]["models"]
 REPEATS = range(1, CASE["comparison"]["repeats"] + 1)
+OPTIONS = {model: CASE["chain"].get(model, {}) for model in MODELS}
 FORMS = {form: f".{form}" for form in ["png", "pdf", "csv"]}
 TRAJECTORY = {"trajectory": f"{RESULTS}/trajectory.npy", "metadata": f"{RESULTS}/trajectory.json"}
 CHAIN_FILES = {"best": "scores_best"}
@@ -25,7 +26,7 @@ MODEL_FIGURES = {"static": "fig3_static", "dynamic": "fig4_dynamic"}
 PLOTS = [
     "fig1_cells",
     "fig2_cost",
-    *map(MODEL_FIGURES.get, MODELS),
+    *(MODEL_FIGURES[model] for model in MODELS if model in MODEL_FIGURES),
     "fig5a_radial",
     "fig5b_axial",
     "snapshot",
@@ -276,6 +277,7 @@ rule build_transitions:
         "envs/python.yaml"
     params:
         **pick(CASE, "learning", "chain.lag_s", "chain.estimator"),
+        options=lambda wildcards: OPTIONS[wildcards.model],
     script:
         "scripts/build_transitions.py"
 
@@ -298,6 +300,7 @@ rule run_chain:
     params:
         **pick(CASE, "comparison.start_s", "comparison.end_s", "mixing", "chain.estimator", "chain.seed"),
         **pick(CASE, "figures.batch_height_m", "figures.moments_s"),
+        options=lambda wildcards: OPTIONS[wildcards.model],
         learning=CASE["learning"],
     script:
         "scripts/run_chain.py"
@@ -334,7 +337,7 @@ rule compare_mixing:
 rule diagnose_chains:
     input:
         modules(
-            "blocks", "cell_store", "counting", "diagnosis", "estimators", "frames", "grid", "markov_chain"
+            "blocks", "cell_store", "counting", "diagnosis", "diagnostics", "estimators", "frames", "grid", "markov_chain"
         ),
         modules("markov_check", "mixing", "models", "passage", "propagation", "stage"),
         **TRAJECTORY,
@@ -350,6 +353,7 @@ rule diagnose_chains:
         "envs/python.yaml"
     params:
         **pick(CASE, "mixing", "chain.models", "chain.estimator", "chain.seed"),
+        options=OPTIONS,
         learning=CASE["learning"],
         comparison=pick(CASE, "comparison.start_s", "comparison.end_s"),
     script:
@@ -404,6 +408,7 @@ rule time_models:
     threads: workflow.cores or 1
     params:
         **pick(CASE, "mixing", "chain.models", "chain.estimator", "chain.seed"),
+        options=OPTIONS,
         learning=CASE["learning"],
         comparison=pick(CASE, "comparison.start_s", "comparison.end_s"),
     script:

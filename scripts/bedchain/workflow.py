@@ -82,8 +82,15 @@ def solver_values(case: Case) -> dict[str, str]:
 
 
 def table_values(case: Case) -> dict[str, Any]:
-    """Dotted key -> value, of the sections that Table 1 shows."""
-    return {f"{section}.{key}": value for section in TABLE_SECTIONS for key, value in case[section].items()}
+    """Dotted key -> value, of the sections that Table 1 shows; settings of models not built are not."""
+    values: dict[str, Any] = {}
+    for section in TABLE_SECTIONS:
+        for key, value in case[section].items():
+            if not isinstance(value, dict):
+                values[f"{section}.{key}"] = value
+            elif key in case["chain"]["models"]:
+                values |= {f"{section}.{key}.{name}": one for name, one in value.items()}
+    return values
 
 
 def modules(*names: str) -> list[str]:
