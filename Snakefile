@@ -2,16 +2,19 @@
 # The whole pipeline of one case, in its order: particles and gas, cells, chains, comparison, figures.
 #   snakemake --cores 2                        the case `short`
 #   snakemake --cores 2 --config case=paper    another case of cases/
+#   ... reference=simulate                     not from the archive cases/<case>/reference/, but by the solvers
 # A rule gets only the keys of the case that it needs: what a changed key does not touch does not run again.
 import sys
 
 sys.path.insert(0, f"{workflow.basedir}/scripts")
 
 from bedchain.parameters import weight_per_area
-from bedchain.workflow import case_or_exit, modules, pick, solver_values, source_files, table_values
+from bedchain.workflow import case_or_exit, modules, pick, reference_or_exit
+from bedchain.workflow import solver_values, source_files, table_values
 
 NAME = config.get("case", "short")
 CASE = case_or_exit(NAME)
+REFERENCE = reference_or_exit(config.get("reference"), NAME, CASE)
 RESULTS = f"results/{NAME}"
 FIGURES = f"results/{NAME}/figures"
 LOGS = f"logs/{NAME}"
@@ -19,6 +22,8 @@ BENCHMARKS = f"benchmarks/{NAME}"
 MODELS = CASE["chain"]["models"]
 REPEATS = range(1, CASE["comparison"]["repeats"] + 1)
 FORMS = {form: f".{form}" for form in ["png", "pdf", "csv"]}
+# the bed that all is made of, simulated or out of its archive
+RUN = {"dem": f"{RESULTS}/dem.json", "bed_series": f"{RESULTS}/bed_series.csv"}
 TRAJECTORY = {"trajectory": f"{RESULTS}/trajectory.npy", "metadata": f"{RESULTS}/trajectory.json"}
 MODEL_FIGURES = {"static": "fig3_static", "dynamic": "fig4_dynamic"}
 PLOTS = [
@@ -123,8 +128,7 @@ rule run_dem:
         blocks=source_files("liggghts_inputs/include", "*.in"),
         gas=source_files("openfoam_case", "0.orig/*", "constant/*", "system/*"),
     output:
-        dem=f"{RESULTS}/dem.json",
-        bed_series=f"{RESULTS}/bed_series.csv",
+        **RUN,
     log:
         f"{LOGS}/run_dem.log",
     benchmark:
@@ -144,7 +148,7 @@ rule run_dem:
 rule repeat_dem:
     input:
         rules.write_parameters.output,
-        dem=rules.run_dem.output.dem,
+        dem=RUN["dem"],
         solver=rules.build_solver.output.solver,
         decks=["liggghts_inputs/in.perturb", "liggghts_inputs/in.fluidize"],
         blocks=source_files("liggghts_inputs/include", "*.in"),
@@ -204,6 +208,32 @@ rule measure_mixing:
         source="dem_{repeat}",
     script:
         "scripts/measure_mixing.py"
+
+
+# A bed that was simulated before and archived: what run_dem, parse_dumps and the repeats would leave behind.
+if REFERENCE:
+
+    ruleorder: unpack_reference > run_dem > parse_dumps > measure_mixing
+
+    rule unpack_reference:
+        input:
+            modules("archive", "packing", "stage", "trajectory"),
+            archive=source_files(REFERENCE, "*"),
+        output:
+            **TRAJECTORY,
+            **RUN,
+            gas=f"{RESULTS}/gas.npz",
+            repeats=expand(rules.measure_mixing.output.mixing, repeat=REPEATS),
+        log:
+            f"{LOGS}/unpack_reference.log",
+        benchmark:
+            f"{BENCHMARKS}/unpack_reference.tsv"
+        conda:
+            "envs/python.yaml"
+        params:
+            folder=str(REFERENCE),
+        script:
+            "scripts/unpack_reference.py"
 
 
 rule assign_cells:
@@ -273,7 +303,7 @@ rule compare_mixing:
         **TRAJECTORY,
         cells=rules.assign_cells.output.cells,
         chains=expand(rules.run_chain.output.chain, model=MODELS),
-        bed_series=rules.run_dem.output.bed_series,
+        bed_series=RUN["bed_series"],
         repeats=expand(f"{RESULTS}/repeats/{{repeat}}/mixing.csv", repeat=REPEATS),
     output:
         mixing=f"{RESULTS}/mixing.csv",
@@ -327,7 +357,7 @@ rule time_models:
         ),
         modules("trajectory"),
         **TRAJECTORY,
-        dem=rules.run_dem.output.dem,
+        dem=RUN["dem"],
         cells=rules.assign_cells.output.cells,
         transitions=expand(rules.build_transitions.output.transitions, model=MODELS),
     output:
@@ -444,7 +474,7 @@ rule plot_snapshot:
     input:
         modules("cell_store", "figures", "gas_field", "stage", "trajectory"),
         **TRAJECTORY,
-        dem=rules.run_dem.output.dem,
+        dem=RUN["dem"],
     output:
         multiext(f"{FIGURES}/snapshot", **FORMS),
     log:
@@ -514,7 +544,7 @@ rule plot_timescales:
 rule write_provenance:
     input:
         modules("case", "provenance", "stage"),
-        dem=rules.run_dem.output.dem,
+        dem=RUN["dem"],
         metrics=rules.compare_mixing.output.metrics,
         timing=rules.time_models.output.timing,
     output:
