@@ -36,6 +36,7 @@ PLOTS = [
     *(["fig_difference"] if {*MODEL_FIGURES} <= {*MODELS} else []),
     "fig_chapman_kolmogorov",
     "fig_timescales",
+    "fig_stationarity",
 ]
 
 
@@ -48,6 +49,7 @@ rule all:
                 "mixing.csv",
                 "metrics.csv",
                 "diagnostics.csv",
+                "stationarity.csv",
                 "timing.csv",
                 "table1.csv",
                 "provenance.json",
@@ -322,6 +324,27 @@ rule compare_mixing:
         weight_Pa=weight_per_area(CASE),
     script:
         "scripts/compare_mixing.py"
+
+
+rule plot_stationarity:
+    input:
+        modules("comparison", "figures", "frames", "stage", "stationarity", "trajectory"),
+        **TRAJECTORY,
+        bed_series=RUN["bed_series"],
+    output:
+        multiext(f"{FIGURES}/fig_stationarity", **FORMS),
+        stationarity=f"{RESULTS}/stationarity.csv",
+    log:
+        f"{LOGS}/plot_stationarity.log",
+    conda:
+        "envs/python.yaml"
+    params:
+        **pick(CASE, "mixing", "bed.thickness_m", "particles.diameter_m", "figures.resolution_dpi"),
+        start_s=CASE["learning"]["start_s"],
+        end_s=CASE["comparison"]["end_s"],
+        row_m=CASE["bed"]["height_m"] / CASE["cells"]["rows"],
+    script:
+        "scripts/plot_stationarity.py"
 
 
 rule diagnose_chains:

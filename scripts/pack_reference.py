@@ -3,8 +3,8 @@
 
 usage: python scripts/pack_reference.py paper
 
-From the start of the learning to the end of the comparison: positions rounded down to whole levels, the gas
-at the ends of the segments, the solver's series, the repeats' mixing curves, and where all of it comes from.
+From a little before the learning to the end of the comparison: positions rounded down to whole levels, the
+gas at the ends of the segments, the solver's series, the repeats' mixing curves, and where all of it is from.
 """
 
 import argparse
@@ -30,6 +30,8 @@ from bedchain.storage import write_arrays
 from bedchain.trajectory import open_trajectory, read_manifest
 
 LEVEL_M = 1e-3
+# before the learning: chains that know where a particle came from start from it
+HISTORY_S = 0.25
 TIME_TOLERANCE_S = 1e-9
 
 
@@ -58,7 +60,8 @@ def pack_reference(case_file: Path, results: Path, target: Path, level_m: float 
     start_s, end_s = case["learning"]["start_s"], case["comparison"]["end_s"]
     manifest = finished_manifest(results, case)
     store, described = open_trajectory(results / "trajectory.npy", results / "trajectory.json")
-    frames = window(np.array(described["times_s"]), start_s, end_s)
+    history_s = min(HISTORY_S, start_s)
+    frames = window(np.array(described["times_s"]), start_s - history_s, end_s)
     with whole_folder(target) as part:
         levels = (levels_of(store[at, :2], level_m) for at in range(frames.start, frames.stop))
         write_levels(levels, part / archive.POSITIONS)
@@ -72,6 +75,7 @@ def pack_reference(case_file: Path, results: Path, target: Path, level_m: float 
             "solver_keys_sha256": archive.keys_hash(keys),
             "start_s": start_s,
             "end_s": end_s,
+            "history_s": history_s,
             "n_frames": frames.stop - frames.start,
             "level_m": level_m,
             "steps": described["steps"][frames],

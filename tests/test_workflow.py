@@ -37,6 +37,7 @@ ALL = {
     *("compare_mixing", "time_models", "plot_cells", "plot_cost", "plot_distribution", "plot_mixing"),
     *("plot_snapshot", "write_table", "write_provenance"),
     *("diagnose_chains", "plot_difference", "plot_chapman_kolmogorov", "plot_timescales"),
+    "plot_stationarity",
 }
 PARTICLES = {
     *("build_solver", "write_parameters", "run_dem", "parse_dumps", "repeat_dem", "measure_mixing"),
@@ -126,8 +127,8 @@ def with_archive(finished, tmp_path):
     shutil.copytree(finished / "cases", tmp_path / "cases")
     case = load_case(tmp_path / "cases" / "short" / "case.yaml")
     found = {
-        "solver_keys": solver_keys(case, load_schema()), "start_s": 1.5, "end_s": 5.5, "n_frames": 161,
-        "level_m": 1e-3, "repeats": 3, "files": {},
+        "solver_keys": solver_keys(case, load_schema()), "start_s": 1.5, "end_s": 5.5, "history_s": 0.25,
+        "n_frames": 171, "level_m": 1e-3, "repeats": 3, "files": {},
     }  # fmt: skip
     (tmp_path / "cases" / "short" / "reference").mkdir()
     (tmp_path / "cases" / "short" / "reference" / "provenance.json").write_text(json.dumps(found))
@@ -218,7 +219,8 @@ def test_another_repeat_runs_it_alone_and_what_compares(finished, case):
 
 def test_another_estimator_leaves_the_cells_alone(finished, case):
     case("chain", "estimator", "per_step")
-    assert set(planned(finished)) == ALL - PARTICLES - WHOLE_BED - {"assign_cells", "plot_cells"}
+    left_alone = PARTICLES | WHOLE_BED | {"assign_cells", "plot_cells", "plot_stationarity"}
+    assert set(planned(finished)) == ALL - left_alone
 
 
 def test_another_batch_leaves_the_matrices_alone(finished, case):

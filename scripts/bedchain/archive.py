@@ -65,7 +65,7 @@ def read_provenance(folder: Path) -> dict[str, Any]:
     """
     try:
         found = json.loads((folder / PROVENANCE).read_text(encoding="utf-8"))
-        _ = found["solver_keys"], found["start_s"], found["end_s"], found["n_frames"], found["files"]
+        _ = found["solver_keys"], found["start_s"], found["end_s"], found["history_s"], found["files"]
     except (OSError, ValueError, KeyError) as error:
         raise UserError(
             f"{folder}: no readable archive of a bed ({error!r}); fetch it again, {SIMULATE}"
@@ -133,7 +133,8 @@ def _missing_times(found: dict[str, Any], case: Case) -> list[str]:
         for edge in ("start_s", "end_s")
         if not start <= case[name][edge] <= end
     ]
-    frames = ratio(end, case["time"]["frame_interval_s"]) - ratio(start, case["time"]["frame_interval_s"]) + 1
+    interval = case["time"]["frame_interval_s"]
+    frames = ratio(end, interval) - ratio(start, interval) + ratio(found["history_s"], interval) + 1
     if found["n_frames"] != frames:
         wrong.append(f"it holds {found['n_frames']} frames of {frames}: the simulation was not finished")
     if found["repeats"] < case["comparison"]["repeats"]:
