@@ -2,16 +2,19 @@
 # The whole pipeline of one case, in its order: particles and gas, cells, chains, comparison, figures.
 #   snakemake --cores 2                        the case `short`
 #   snakemake --cores 2 --config case=paper    another case of cases/
+#   ... reference=simulate                     not from the archive cases/<case>/reference/, but by the solvers
 # A rule gets only the keys of the case that it needs: what a changed key does not touch does not run again.
 import sys
 
 sys.path.insert(0, f"{workflow.basedir}/scripts")
 
 from bedchain.parameters import weight_per_area
-from bedchain.workflow import case_or_exit, modules, pick, solver_values, source_files, table_values
+from bedchain.workflow import case_or_exit, modules, pick, reference_or_exit
+from bedchain.workflow import solver_values, source_files, table_values
 
 NAME = config.get("case", "short")
 CASE = case_or_exit(NAME)
+REFERENCE = reference_or_exit(config.get("reference"), NAME, CASE)
 RESULTS = f"results/{NAME}"
 FIGURES = f"results/{NAME}/figures"
 LOGS = f"logs/{NAME}"
@@ -20,6 +23,8 @@ MODELS = CASE["chain"]["models"]
 REPEATS = range(1, CASE["comparison"]["repeats"] + 1)
 OPTIONS = {model: CASE["chain"].get(model, {}) for model in MODELS}
 FORMS = {form: f".{form}" for form in ["png", "pdf", "csv"]}
+# the bed that all is made of, simulated or out of its archive
+RUN = {"dem": f"{RESULTS}/dem.json", "bed_series": f"{RESULTS}/bed_series.csv"}
 TRAJECTORY = {"trajectory": f"{RESULTS}/trajectory.npy", "metadata": f"{RESULTS}/trajectory.json"}
 CHAIN_FILES = {"best": "scores_best"}
 MODEL_FIGURES = {"static": "fig3_static", "dynamic": "fig4_dynamic"}
@@ -33,6 +38,7 @@ PLOTS = [
     *(["fig_difference"] if {*MODEL_FIGURES} <= {*MODELS} else []),
     "fig_chapman_kolmogorov",
     "fig_timescales",
+    "fig_stationarity",
 ]
 SCORE_PLOTS = ["fig_pareto", "fig5_best", "fig_autocorrelation", "fig_distribution_best"]
 
@@ -46,6 +52,7 @@ rule all:
                 "mixing.csv",
                 "metrics.csv",
                 "diagnostics.csv",
+                "stationarity.csv",
                 "timing.csv",
                 "table1.csv",
                 "provenance.json",
@@ -161,8 +168,7 @@ rule run_dem:
         blocks=source_files("liggghts_inputs/include", "*.in"),
         gas=source_files("openfoam_case", "0.orig/*", "constant/*", "system/*"),
     output:
-        dem=f"{RESULTS}/dem.json",
-        bed_series=f"{RESULTS}/bed_series.csv",
+        **RUN,
     log:
         f"{LOGS}/run_dem.log",
     benchmark:
@@ -182,7 +188,7 @@ rule run_dem:
 rule repeat_dem:
     input:
         rules.write_parameters.output,
-        dem=rules.run_dem.output.dem,
+        dem=RUN["dem"],
         solver=rules.build_solver.output.solver,
         decks=["liggghts_inputs/in.perturb", "liggghts_inputs/in.fluidize"],
         blocks=source_files("liggghts_inputs/include", "*.in"),
@@ -242,6 +248,32 @@ rule measure_mixing:
         source="dem_{repeat}",
     script:
         "scripts/measure_mixing.py"
+
+
+# A bed that was simulated before and archived: what run_dem, parse_dumps and the repeats would leave behind.
+if REFERENCE:
+
+    ruleorder: unpack_reference > run_dem > parse_dumps > measure_mixing
+
+    rule unpack_reference:
+        input:
+            modules("archive", "packing", "stage", "trajectory"),
+            archive=source_files(REFERENCE, "*"),
+        output:
+            **TRAJECTORY,
+            **RUN,
+            gas=f"{RESULTS}/gas.npz",
+            repeats=expand(rules.measure_mixing.output.mixing, repeat=REPEATS),
+        log:
+            f"{LOGS}/unpack_reference.log",
+        benchmark:
+            f"{BENCHMARKS}/unpack_reference.tsv"
+        conda:
+            "envs/python.yaml"
+        params:
+            folder=str(REFERENCE),
+        script:
+            "scripts/unpack_reference.py"
 
 
 rule assign_cells:
@@ -313,7 +345,7 @@ rule compare_mixing:
         **TRAJECTORY,
         cells=rules.assign_cells.output.cells,
         chains=expand(rules.run_chain.output.chain, model=MODELS),
-        bed_series=rules.run_dem.output.bed_series,
+        bed_series=RUN["bed_series"],
         repeats=expand(f"{RESULTS}/repeats/{{repeat}}/mixing.csv", repeat=REPEATS),
     output:
         mixing=f"{RESULTS}/mixing.csv",
@@ -332,6 +364,27 @@ rule compare_mixing:
         weight_Pa=weight_per_area(CASE),
     script:
         "scripts/compare_mixing.py"
+
+
+rule plot_stationarity:
+    input:
+        modules("comparison", "figures", "frames", "stage", "stationarity", "trajectory"),
+        **TRAJECTORY,
+        bed_series=RUN["bed_series"],
+    output:
+        multiext(f"{FIGURES}/fig_stationarity", **FORMS),
+        stationarity=f"{RESULTS}/stationarity.csv",
+    log:
+        f"{LOGS}/plot_stationarity.log",
+    conda:
+        "envs/python.yaml"
+    params:
+        **pick(CASE, "mixing", "bed.thickness_m", "particles.diameter_m", "figures.resolution_dpi"),
+        start_s=CASE["learning"]["start_s"],
+        end_s=CASE["comparison"]["end_s"],
+        row_m=CASE["bed"]["height_m"] / CASE["cells"]["rows"],
+    script:
+        "scripts/plot_stationarity.py"
 
 
 rule diagnose_chains:
@@ -396,7 +449,7 @@ rule time_models:
         ),
         modules("trajectory"),
         **TRAJECTORY,
-        dem=rules.run_dem.output.dem,
+        dem=RUN["dem"],
         cells=rules.assign_cells.output.cells,
         transitions=expand(rules.build_transitions.output.transitions, model=MODELS),
     output:
@@ -514,7 +567,7 @@ rule plot_snapshot:
     input:
         modules("cell_store", "figures", "gas_field", "stage", "trajectory"),
         **TRAJECTORY,
-        dem=rules.run_dem.output.dem,
+        dem=RUN["dem"],
     output:
         multiext(f"{FIGURES}/snapshot", **FORMS),
     log:
@@ -671,7 +724,7 @@ rule plot_autocorrelation:
 rule write_provenance:
     input:
         modules("case", "provenance", "stage"),
-        dem=rules.run_dem.output.dem,
+        dem=RUN["dem"],
         metrics=rules.compare_mixing.output.metrics,
         timing=rules.time_models.output.timing,
     output:

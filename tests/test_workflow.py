@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """The workflow by dry runs on a copy of the repository whose results are made up and up to date."""
 
+import json
 import os
 import re
 import shutil
@@ -15,6 +16,8 @@ from snakemake.settings.types import OutputSettings, ResourceSettings
 
 sys.path.insert(0, str(Path(__file__).resolve().parents[1] / "scripts"))
 
+from bedchain.archive import solver_keys
+from bedchain.case import load_case, load_schema
 from bedchain.workflow import imported_modules, modules, source_files
 
 ROOT = Path(__file__).resolve().parents[1]
@@ -34,6 +37,7 @@ ALL = {
     *("compare_mixing", "time_models", "plot_cells", "plot_cost", "plot_distribution", "plot_mixing"),
     *("plot_snapshot", "write_table", "write_provenance"),
     *("diagnose_chains", "plot_difference", "plot_chapman_kolmogorov", "plot_timescales"),
+    "plot_stationarity",
 }
 PARTICLES = {
     *("build_solver", "write_parameters", "run_dem", "parse_dumps", "repeat_dem", "measure_mixing"),
@@ -125,6 +129,45 @@ def test_scores_need_no_chain_of_the_comparison(finished, tmp_path):
     assert jobs["plot_distribution"] == 1
 
 
+@pytest.fixture
+def with_archive(finished, tmp_path):
+    """An empty folder whose short case has an archive, as far as dry runs look into it."""
+    for name in COPIED:
+        (tmp_path / name).parent.mkdir(parents=True, exist_ok=True)
+        (tmp_path / name).symlink_to(finished / name)
+    (tmp_path / "cases").unlink()
+    shutil.copytree(finished / "cases", tmp_path / "cases")
+    case = load_case(tmp_path / "cases" / "short" / "case.yaml")
+    found = {
+        "solver_keys": solver_keys(case, load_schema()), "start_s": 1.5, "end_s": 5.5, "history_s": 0.25,
+        "n_frames": 171, "level_m": 1e-3, "repeats": 3, "files": {},
+    }  # fmt: skip
+    (tmp_path / "cases" / "short" / "reference").mkdir()
+    (tmp_path / "cases" / "short" / "reference" / "provenance.json").write_text(json.dumps(found))
+    return tmp_path
+
+
+def test_an_archived_bed_is_unpacked_and_no_solver_runs(with_archive):
+    jobs = planned(with_archive)
+    assert set(jobs) == ALL - PARTICLES | {"unpack_reference"}
+    assert jobs["unpack_reference"] == 1
+    assert set(planned(with_archive, "--config", "reference=simulate")) == ALL
+
+
+def test_what_the_archive_cannot_serve_stops_before_anything(with_archive):
+    file = with_archive / "cases" / "short" / "case.yaml"
+    text = file.read_text(encoding="utf-8")
+    file.write_text(text.replace("columns: 10", "columns: 12"), encoding="utf-8")
+    done = snakemake(with_archive, "--dry-run")
+    assert done.returncode != 0 and "cells.columns 12" in done.stderr and "divisor of 100" in done.stderr
+    done = snakemake(with_archive, "--dry-run", "--config", "reference=simulated")
+    assert done.returncode != 0 and "take archive or simulate" in done.stderr
+    shutil.rmtree(with_archive / "cases" / "short" / "reference")
+    done = snakemake(with_archive, "--dry-run", "--config", "reference=archive")
+    assert done.returncode != 0 and "short has no archive" in done.stderr
+    assert "Traceback" not in done.stderr and not (with_archive / "results").exists()
+
+
 def test_a_comment_in_the_case_file_runs_nothing(finished, case):
     file = finished / "cases" / "short" / "case.yaml"
     case("figures", "batch_height_m", "0.03  # the default, three rows")
@@ -188,7 +231,8 @@ def test_another_repeat_runs_it_alone_and_what_compares(finished, case):
 
 def test_another_estimator_leaves_the_cells_alone(finished, case):
     case("chain", "estimator", "per_step")
-    assert set(planned(finished)) == ALL - PARTICLES - WHOLE_BED - {"assign_cells", "plot_cells"}
+    left_alone = PARTICLES | WHOLE_BED | {"assign_cells", "plot_cells", "plot_stationarity"}
+    assert set(planned(finished)) == ALL - left_alone
 
 
 def test_another_batch_leaves_the_matrices_alone(finished, case):
