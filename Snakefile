@@ -21,6 +21,7 @@ REPEATS = range(1, CASE["comparison"]["repeats"] + 1)
 FORMS = {form: f".{form}" for form in ["png", "pdf", "csv"]}
 TRAJECTORY = {"trajectory": f"{RESULTS}/trajectory.npy", "metadata": f"{RESULTS}/trajectory.json"}
 CHAIN_FILES = {"best": "scores_best"}
+AUDITED = ["bed", "particles", "contact", "gas", "drum"]
 MODEL_FIGURES = {"static": "fig3_static", "dynamic": "fig4_dynamic"}
 PLOTS = [
     "fig1_cells",
@@ -47,6 +48,7 @@ rule all:
                 "diagnostics.csv",
                 "timing.csv",
                 "table1.csv",
+                "audit.csv",
                 "provenance.json",
             ],
         ),
@@ -148,6 +150,23 @@ rule write_parameters:
         folder=subpath(output.liggghts, parent=True),
     shell:
         "python scripts/write_parameters.py {input.case} {params.folder} 2>&1 | tee {log} >&2"
+
+
+# First of all that can run: what it warns of is read before the particles have taken hours.
+rule audit_scene:
+    input:
+        modules("audit", "case", "scene_numbers", "stage"),
+    output:
+        audit=f"{RESULTS}/audit.csv",
+    log:
+        f"{LOGS}/audit_scene.log",
+    priority: 1
+    conda:
+        "envs/python.yaml"
+    params:
+        case={section: CASE[section] for section in AUDITED if section in CASE},
+    script:
+        "scripts/audit_scene.py"
 
 
 # Hours for a large bed, so no edit of a script reruns it. Its state, dem/, is no declared output:
