@@ -21,6 +21,8 @@ REPEATS = range(1, CASE["comparison"]["repeats"] + 1)
 FORMS = {form: f".{form}" for form in ["png", "pdf", "csv"]}
 TRAJECTORY = {"trajectory": f"{RESULTS}/trajectory.npy", "metadata": f"{RESULTS}/trajectory.json"}
 CHAIN_FILES = {"best": "scores_best"}
+GAS = CASE["gas"]["model"] != "none"  # without it nothing of OpenFOAM is built or run
+DRUM = "liggghts_inputs/drum"
 AUDITED = ["bed", "particles", "contact", "gas", "drum"]
 MODEL_FIGURES = {"static": "fig3_static", "dynamic": "fig4_dynamic"}
 PLOTS = [
@@ -29,7 +31,7 @@ PLOTS = [
     *map(MODEL_FIGURES.get, MODELS),
     "fig5a_radial",
     "fig5b_axial",
-    "snapshot",
+    *(["snapshot"] if GAS else []),
     *(["fig_difference"] if {*MODEL_FIGURES} <= {*MODELS} else []),
     "fig_chapman_kolmogorov",
     "fig_timescales",
@@ -174,10 +176,10 @@ rule audit_scene:
 rule run_dem:
     input:
         rules.write_parameters.output,
-        solver=rules.build_solver.output.solver,
-        decks=["liggghts_inputs/in.settle", "liggghts_inputs/in.fluidize"],
+        solver=rules.build_solver.output.solver if GAS else [],
+        decks=["liggghts_inputs/in.settle", "liggghts_inputs/in.fluidize"] if GAS else source_files(DRUM, "*"),
         blocks=source_files("liggghts_inputs/include", "*.in"),
-        gas=source_files("openfoam_case", "0.orig/*", "constant/*", "system/*"),
+        gas=source_files("openfoam_case", "0.orig/*", "constant/*", "system/*") if GAS else [],
     output:
         dem=f"{RESULTS}/dem.json",
         bed_series=f"{RESULTS}/bed_series.csv",

@@ -114,6 +114,14 @@ def test_everything_runs_in_an_empty_folder(finished, tmp_path):
     assert set(planned(tmp_path)) == ALL
 
 
+def test_a_scene_without_gas_asks_for_nothing_of_openfoam(finished, tmp_path):
+    for name in set(COPIED) - {"openfoam_case"}:
+        (tmp_path / name).parent.mkdir(parents=True, exist_ok=True)
+        (tmp_path / name).symlink_to(finished / name)
+    jobs = planned(tmp_path, "--config", "case=drum")
+    assert set(jobs) == ALL - {"build_solver", "plot_snapshot", "repeat_dem", "measure_mixing"}
+
+
 def test_a_comment_in_the_case_file_runs_nothing(finished, case):
     file = finished / "cases" / "short" / "case.yaml"
     case("figures", "batch_height_m", "0.03  # the default, three rows")

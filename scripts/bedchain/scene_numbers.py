@@ -7,7 +7,7 @@ from dataclasses import dataclass
 from scipy.optimize import brentq
 
 from bedchain.case import Case
-from bedchain.case_numbers import DENSE_VOIDAGE, PACKED_AREA_SHARE, settled_height
+from bedchain.case_numbers import PACKED_AREA_SHARE, PACKED_VOLUME_SHARE, settled_height
 from bedchain.errors import UserError
 from bedchain.parameters import GRAVITY_M_S2
 
@@ -90,12 +90,9 @@ def scene_of(case: Case) -> Scene:
             f"({gas['density_kg_m3']:g}): the particles would not settle; correct one of the two"
         )
     diameter, width, thickness = particles["diameter_m"], bed["width_m"], bed["thickness_m"]
-    layered, solved = bed.get("layers") == "many", gas["model"] != "none"
-    depth = settled_height(particles["number"], diameter, width)
-    voidage = 1 - PACKED_AREA_SHARE * 2 / 3 * diameter / thickness
-    if layered:
-        depth = particles["number"] * math.pi / 6 * diameter**3 / ((1 - DENSE_VOIDAGE) * width * thickness)
-        voidage = DENSE_VOIDAGE
+    layered, solved = bed["layers"] == "many", gas["model"] != "none"
+    depth = settled_height(particles["number"], diameter, width, thickness if layered else None)
+    voidage = 1 - (PACKED_VOLUME_SHARE if layered else PACKED_AREA_SHARE * 2 / 3 * diameter / thickness)
     return Scene(
         diameter, particles["density_kg_m3"], gas["density_kg_m3"], gas["viscosity_Pa_s"],
         gas["superficial_velocity_m_s"] if solved else 0.0,

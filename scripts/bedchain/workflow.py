@@ -8,9 +8,11 @@ from typing import Any
 from bedchain.case import Case, load_case, load_schema
 from bedchain.errors import UserError, report_user_errors
 from bedchain.parameters import solver_parameters
+from bedchain.scene_checks import used_keys
 
 TABLE_SECTIONS = (
     "bed",
+    "drum",
     "particles",
     "contact",
     "gas",
@@ -82,8 +84,10 @@ def solver_values(case: Case) -> dict[str, str]:
 
 
 def table_values(case: Case) -> dict[str, Any]:
-    """Dotted key -> value, of the sections that Table 1 shows."""
-    return {f"{section}.{key}": value for section in TABLE_SECTIONS for key, value in case[section].items()}
+    """Dotted key -> value, of the sections that Table 1 shows and the case uses."""
+    used = used_keys(case)
+    sections = [section for section in TABLE_SECTIONS if section in used]
+    return {f"{section}.{key}": value for section in sections for key, value in used[section].items()}
 
 
 def modules(*names: str) -> list[str]:
