@@ -27,6 +27,9 @@ FORMS = {form: f".{form}" for form in ["png", "pdf", "csv"]}
 RUN = {"dem": f"{RESULTS}/dem.json", "bed_series": f"{RESULTS}/bed_series.csv"}
 TRAJECTORY = {"trajectory": f"{RESULTS}/trajectory.npy", "metadata": f"{RESULTS}/trajectory.json"}
 CHAIN_FILES = {"best": "scores_best"}
+GAS = CASE["gas"]["model"] != "none"  # without it nothing of OpenFOAM is built or run
+DRUM = "liggghts_inputs/drum"
+AUDITED = ["bed", "particles", "contact", "gas", "drum"]
 MODEL_FIGURES = {"static": "fig3_static", "dynamic": "fig4_dynamic"}
 PLOTS = [
     "fig1_cells",
@@ -34,7 +37,7 @@ PLOTS = [
     *(MODEL_FIGURES[model] for model in MODELS if model in MODEL_FIGURES),
     "fig5a_radial",
     "fig5b_axial",
-    "snapshot",
+    *(["snapshot"] if GAS else []),
     *(["fig_difference"] if {*MODEL_FIGURES} <= {*MODELS} else []),
     "fig_chapman_kolmogorov",
     "fig_timescales",
@@ -55,6 +58,7 @@ rule all:
                 "stationarity.csv",
                 "timing.csv",
                 "table1.csv",
+                "audit.csv",
                 "provenance.json",
             ],
         ),
@@ -158,15 +162,32 @@ rule write_parameters:
         "python scripts/write_parameters.py {input.case} {params.folder} 2>&1 | tee {log} >&2"
 
 
+# First of all that can run: what it warns of is read before the particles have taken hours.
+rule audit_scene:
+    input:
+        modules("audit", "case", "scene_numbers", "stage"),
+    output:
+        audit=f"{RESULTS}/audit.csv",
+    log:
+        f"{LOGS}/audit_scene.log",
+    priority: 1
+    conda:
+        "envs/python.yaml"
+    params:
+        case={section: CASE[section] for section in AUDITED if section in CASE},
+    script:
+        "scripts/audit_scene.py"
+
+
 # Hours for a large bed, so no edit of a script reruns it. Its state, dem/, is no declared output:
 # snakemake deletes the outputs of a job that failed, and the segments must outlive that.
 rule run_dem:
     input:
         rules.write_parameters.output,
-        solver=rules.build_solver.output.solver,
-        decks=["liggghts_inputs/in.settle", "liggghts_inputs/in.fluidize"],
+        solver=rules.build_solver.output.solver if GAS else [],
+        decks=["liggghts_inputs/in.settle", "liggghts_inputs/in.fluidize"] if GAS else source_files(DRUM, "*"),
         blocks=source_files("liggghts_inputs/include", "*.in"),
-        gas=source_files("openfoam_case", "0.orig/*", "constant/*", "system/*"),
+        gas=source_files("openfoam_case", "0.orig/*", "constant/*", "system/*") if GAS else [],
     output:
         **RUN,
     log:

@@ -35,11 +35,12 @@ ALL = {
         "run_chain",
     ),
     *("compare_mixing", "time_models", "plot_cells", "plot_cost", "plot_distribution", "plot_mixing"),
-    *("plot_snapshot", "write_table", "write_provenance"),
+    *("plot_snapshot", "write_table", "write_provenance", "audit_scene"),
     *("diagnose_chains", "plot_difference", "plot_chapman_kolmogorov", "plot_timescales"),
     "plot_stationarity",
 }
-PARTICLES = {
+AUDIT = {"audit_scene"}  # reads neither time nor cells
+PARTICLES = AUDIT | {
     *("build_solver", "write_parameters", "run_dem", "parse_dumps", "repeat_dem", "measure_mixing"),
 }
 # of the target `scores` only
@@ -168,6 +169,14 @@ def test_what_the_archive_cannot_serve_stops_before_anything(with_archive):
     assert "Traceback" not in done.stderr and not (with_archive / "results").exists()
 
 
+def test_a_scene_without_gas_asks_for_nothing_of_openfoam(finished, tmp_path):
+    for name in set(COPIED) - {"openfoam_case"}:
+        (tmp_path / name).parent.mkdir(parents=True, exist_ok=True)
+        (tmp_path / name).symlink_to(finished / name)
+    jobs = planned(tmp_path, "--config", "case=drum")
+    assert set(jobs) == ALL - {"build_solver", "plot_snapshot", "repeat_dem", "measure_mixing"}
+
+
 def test_a_comment_in_the_case_file_runs_nothing(finished, case):
     file = finished / "cases" / "short" / "case.yaml"
     case("figures", "batch_height_m", "0.03  # the default, three rows")
@@ -207,12 +216,12 @@ def test_a_colour_runs_only_its_figure(finished, case, key, value, jobs):
 )
 def test_physics_runs_the_particles_and_what_follows(finished, case, section, key, value):
     case(section, key, value)
-    assert set(planned(finished)) == ALL - {"build_solver"}
+    assert set(planned(finished)) == ALL - {"build_solver"} - (AUDIT if section == "time" else set())
 
 
 def test_a_later_end_lets_the_particles_go_on_with_the_same_parameters(finished, case):
     case("time", "end_s", "6.0")
-    assert set(planned(finished)) == ALL - {"build_solver", "write_parameters"}
+    assert set(planned(finished)) == ALL - {"build_solver", "write_parameters"} - AUDIT
 
 
 def test_another_repeat_runs_it_alone_and_what_compares(finished, case):

@@ -72,10 +72,12 @@ def problem_of(file: Path, key: str):
     return found[0]
 
 
-@pytest.mark.parametrize("name", ["short", "paper", "mueller"])
+@pytest.mark.parametrize("name", ["short", "paper", "mueller", "drum"])
 def test_shipped_cases_load_with_every_key(name):
     case = load_case(ROOT / "cases" / name / "case.yaml")
     for key in schema_keys(load_schema()):
+        if key.startswith("drum.") and name != "drum":
+            continue
         assert case_value(case, key) is not None, key
 
 
