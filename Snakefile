@@ -411,7 +411,15 @@ rule plot_stationarity:
 rule diagnose_chains:
     input:
         modules(
-            "blocks", "cell_store", "counting", "diagnosis", "diagnostics", "estimators", "frames", "grid", "markov_chain"
+            "blocks",
+            "cell_store",
+            "counting",
+            "diagnosis",
+            "diagnostics",
+            "estimators",
+            "frames",
+            "grid",
+            "markov_chain",
         ),
         modules("markov_check", "mixing", "models", "passage", "propagation", "stage"),
         **TRAJECTORY,
