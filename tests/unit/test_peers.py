@@ -2,20 +2,29 @@
 """The comparison with other codes: constants of their contact laws, their files and logs, the study."""
 
 import math
+import os
 import re
 from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
-import pandas as pd
 import pytest
 
 from bedchain.errors import UserError
 from bedchain.parameters import Parameter
 from bedchain.peers import bedfoam, dpmfoam, lammps, liggghts
-from bedchain.peers.bed import Bed, with_numbers, write_inputs
+from bedchain.peers.bed import Bed, fluidized_bed, with_numbers, write_inputs
 from bedchain.peers.outcome import Outcome, Peer
-from bedchain.peers.study import all_peers, compare, duration_for, missing, record_file, run_in_turns
+from bedchain.peers.plots import draw
+from bedchain.peers.study import (
+    all_peers,
+    busy_time,
+    compare,
+    duration_for,
+    missing,
+    record_file,
+    run_in_turns,
+)
 from bedchain.peers.table import markdown, ratios, summary
 
 ROOT = Path(__file__).parents[2]
@@ -45,7 +54,7 @@ def bed():
     return Bed("box", [Parameter(name, value, "-", "test") for name, value in NUMBERS.items()], PARTICLES)
 
 
-def code(name, costs, folder, calls, gas=False, fails=False):
+def code(name, costs, folder, calls, gas=False, fails=False, particles=3):
     """A code that takes the given wall times in turn, and notes its calls."""
 
     def run(bed, work, duration_s):
@@ -54,7 +63,9 @@ def code(name, costs, folder, calls, gas=False, fails=False):
             raise UserError(f"{name} has stopped\nits log: somewhere")
         work.mkdir(parents=True)
         wall = costs[calls.count(name) - 1]
-        return Outcome(duration_s, wall, 3, bed.dem_steps(duration_s), 0.01, *([5.0, wall, 0.1, 0.1] * gas))
+        return Outcome(
+            duration_s, wall, particles, bed.dem_steps(duration_s), 0.01, *([5.0, wall, 0.1, 0.1] * gas)
+        )
 
     return Peer(name, "sh", "", gas, "", run, 1e-6, (folder,))
 
@@ -208,19 +219,36 @@ def test_a_code_that_is_not_there_or_fails_leaves_a_note_and_the_study_goes_on(b
 def test_medians_and_ratios_by_hand(bed, tmp_path):
     calls, own = [], tmp_path / "x"
     costs = {"bedFoam": [1.2, 9.0, 1.0], "bedFoam, 2 ranks": [0.8] * 3, "DPMFoam": [12.0, 60.0, 11.0]}
-    peers = [code(name, walls, own, calls, gas=True) for name, walls in costs.items()]
+    peers = [code(name, walls, own, calls, gas=True, particles=81_000) for name, walls in costs.items()]
     runs = run_in_turns(bed, peers, tmp_path, 3, 0.01, 75.0, lambda line: None)
     table = summary(runs, {"box": bed}, peers)
     row = table.set_index("code").loc["bedFoam"]
     assert row["wall_s_per_simulated_s"] == pytest.approx(120)
     assert (row["fastest_s_per_simulated_s"], row["slowest_s_per_simulated_s"]) == pytest.approx((100, 900))
-    assert row["particle_steps_per_s"] == pytest.approx(3 * 500 / 1.2)
+    assert row["particle_steps_per_s"] == pytest.approx(81_000 * 500 / 1.2)
     assert row["pressure_drop_per_weight_1"] == pytest.approx(5.0 / bed.weight_per_area)
     assert table["relative_to_bedfoam_1"].tolist() == pytest.approx([1, 0.8 / 1.2, 10])
     found = ratios(table).set_index("quantity")
     assert found["met"].tolist() == ["yes", "no", "yes", "", ""]
     assert found["value"].tolist() == pytest.approx([0.2 / 1.2, 1.5, 10, 1, 1])
     assert "gas and exchange over DEM, one rank [1] | 0.167 | <= 0.2 | yes" in markdown(table, ratios(table))
+    small = ratios(table.assign(particles=9000))
+    assert small["met"].eq("").all() and small["target"].eq("").all()
+
+
+def test_time_of_other_programs():
+    # user, nice, system, idle, waiting, two interrupts, stolen; guests are in user
+    text = "cpu  100 10 20 5000 300 1 2 3 40 50\ncpu0 1 2 3\n"
+    assert busy_time(text) == pytest.approx(136 / os.sysconf("SC_CLK_TCK"))
+
+
+def test_a_busy_machine_is_told(bed, tmp_path):
+    peers = [code("bedFoam", [1.0], tmp_path / "x", [], gas=True)]
+    run = run_in_turns(bed, peers, tmp_path, 1, 0.01, 75.0, lambda line: None)[0]
+    quiet = summary([replace(run, others=0.1)], {"box": bed}, peers)
+    loud = summary([replace(run, others=0.9)], {"box": bed}, peers)
+    assert "other programs" not in markdown(quiet, ratios(quiet))
+    assert "other programs were at work during bedFoam" in markdown(loud, ratios(loud))
 
 
 def test_every_code_names_its_files_and_its_program():
@@ -240,6 +268,14 @@ def test_a_missing_solver_or_case_is_told(tmp_path, monkeypatch):
     (tmp_path / "bedFoam").touch()
     with pytest.raises(UserError, match="there is no case shorter"):
         compare(["shorter"], tmp_path, tmp_path / "bedFoam", 1, 0.01, 75.0)
+    with pytest.raises(UserError, match="--repeats 0: must be above 0"):
+        compare(["short"], tmp_path, tmp_path / "bedFoam", 0, 0.01, 75.0)
+
+
+def test_a_thick_bed_is_refused(tmp_path, monkeypatch):
+    monkeypatch.chdir(ROOT)
+    with pytest.raises(UserError, match="bed.layers: the comparison runs beds of one layer"):
+        fluidized_bed(ROOT / "cases/mueller/case.yaml", tmp_path, tmp_path / "bedFoam", 0.1)
 
 
 def test_packages_of_the_codes_stand_in_one_file():
@@ -249,10 +285,8 @@ def test_packages_of_the_codes_stand_in_one_file():
     assert needed <= {*listed, *base} and not {*filter(None, listed)} & {*base}
 
 
-def test_the_table_can_be_read_back(bed, tmp_path):
-    calls = []
-    peers = [code("bedFoam", [1.0], tmp_path / "x", calls, gas=True)]
+def test_the_table_can_be_drawn(bed, tmp_path):
+    peers = [code("bedFoam", [1.0], tmp_path / "x", [], gas=True), code("alone", [0.5], tmp_path / "x", [])]
     runs = run_in_turns(bed, peers, tmp_path, 1, 0.01, 75.0, lambda line: None)
-    file = tmp_path / "peers.csv"
-    summary(runs, {"box": bed}, peers).to_csv(file, index=False)
-    assert pd.read_csv(file)["wall_s_per_simulated_s"].tolist() == [100.0]
+    draw(summary(runs, {"box": bed}, peers), tmp_path / "figures" / "peers")
+    assert {file.name for file in (tmp_path / "figures").iterdir()} == {"peers.png", "peers.pdf"}

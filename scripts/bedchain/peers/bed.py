@@ -10,17 +10,17 @@ import numpy as np
 
 from bedchain.case import load_case, load_schema
 from bedchain.dumps import read_dump
+from bedchain.errors import UserError
+from bedchain.gas_case import prepare_gas
 from bedchain.parameters import Parameter, liggghts_text, openfoam_text, solver_parameters
-from bedchain.segments import RESTART, SETTLED, STAMP_DIGITS, input_stamp, whole_folder
+from bedchain.segments import COLUMNS, RESTART, SETTLED, STAMP_DIGITS, input_stamp, whole_folder
 from bedchain.solver_process import run_logged
 from bedchain.verification.particle_files import write_particles
 
 DECKS = Path("liggghts_inputs")
 OWN_DECKS = (DECKS / "include", DECKS / "verify")
-GAS_CASE = Path("openfoam_case")
 MOVING = "moving"
 START = "start.npy"
-COLUMNS = ["id", "x", "z", "vx", "vz"]
 
 
 @dataclass(frozen=True)
@@ -97,32 +97,6 @@ def write_inputs(bed: Bed, folder: Path, **numbers: float | str) -> None:
     write_particles(folder / "particles.data", bed.particles, {item.name: item.value for item in parameters})
 
 
-def gas_case(source: Path, gas: Path, parameters: Path, settings: dict[str, object]) -> None:
-    """Copy an OpenFOAM case, add the numbers that it includes, and make its mesh.
-
-    Parameters
-    ----------
-    source : Path
-        With ``0.orig``, ``constant`` and ``system``.
-    gas : Path
-        Folder of the copy.
-    parameters : Path
-        ``caseParameters`` of the bed.
-    settings : dict
-        Content of ``segmentParameters``; words are quoted.
-    """
-    for name in ("constant", "system"):
-        shutil.copytree(source / name, gas / name)
-    shutil.copytree(source / "0.orig", gas / "0")
-    shutil.copy(parameters, gas / "caseParameters")
-    lines = [
-        f'{name} "{value}";' if isinstance(value, str | Path) else f"{name} {value};"
-        for name, value in settings.items()
-    ]
-    (gas / "segmentParameters").write_text("\n".join(lines) + "\n", encoding="utf-8")
-    run_logged(["blockMesh", "-case", str(gas)], gas / "mesh.log")
-
-
 def fluidized_bed(case_file: Path, folder: Path, solver: Path, start_s: float) -> Bed:
     """The bed of a case in motion: settled without gas, then run by bedFoam up to a time; kept once made.
 
@@ -141,14 +115,20 @@ def fluidized_bed(case_file: Path, folder: Path, solver: Path, start_s: float) -
     -------
     Bed
         Positions and velocities at that time.
+
+    Raises
+    ------
+    UserError
+        The bed is more than one layer thick.
     """
-    parameters = solver_parameters(load_case(case_file), load_schema())
+    bed = Bed(case_file.parent.name, solver_parameters(load_case(case_file), load_schema()), np.empty((0, 5)))
+    if bed.value("depth_walls"):
+        raise UserError(f"{case_file}: bed.layers: the comparison runs beds of one layer; take another case")
     folder.mkdir(parents=True, exist_ok=True)
     given = folder / "parameters.lig"
-    given.write_text(liggghts_text(with_numbers(parameters, start=start_s)), encoding="utf-8")
+    given.write_text(liggghts_text(with_numbers(bed.parameters, start=start_s)), encoding="utf-8")
     decks = [DECKS / "in.settle", DECKS / "in.fluidize", *sorted((DECKS / "include").glob("*.in"))]
     target = folder / input_stamp([given, *decks], 1)
-    bed = Bed(case_file.parent.name, parameters, np.empty((0, 5)))
     if not (target / SETTLED).exists():
         with whole_folder(target / SETTLED) as part:
             _settle(bed, part)
@@ -185,14 +165,14 @@ def _moving_particles(bed: Bed, settled: Path, folder: Path, solver: Path, start
         "end_time": round(bed.gas_steps(start_s) * bed.value("gas_step"), 9),
         "start_step": 0,
         "row_every": 10,
-        "deck": DECKS / "in.fluidize",
-        "decks": DECKS,
-        "parameters": parameters,
-        "restart": settled / RESTART,
-        "output": folder,
+        "deck": str(DECKS / "in.fluidize"),
+        "decks": str(DECKS),
+        "parameters": str(parameters),
+        "restart": str(settled / RESTART),
+        "output": str(folder),
     }
-    gas_case(GAS_CASE, folder / "gas", folder / "caseParameters", settings)
+    prepare_gas(folder / "gas", folder / "caseParameters", settled, settings)
     run_logged([str(solver), "-case", str(folder / "gas")], folder / "bedFoam.log")
-    values = read_dump(folder / f"frame_{steps}.bin", COLUMNS).values
+    values = read_dump(folder / f"frame_{steps}.bin", COLUMNS[0]).values
     moving = values[np.argsort(values[:, 0]), 1:]
     return np.column_stack([moving, np.full(len(moving), bed.value("diameter"))])

@@ -1,12 +1,14 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """bedFoam on one rank and on two, with the project's own decks and gas."""
 
+import math
 from functools import partial
 from pathlib import Path
 
 import pandas as pd
 
-from bedchain.peers.bed import DECKS, GAS_CASE, OWN_DECKS, Bed, gas_case, write_inputs
+from bedchain.gas_case import GAS_CASE, GAS_PARTS, prepare_gas
+from bedchain.peers.bed import DECKS, OWN_DECKS, Bed, write_inputs
 from bedchain.peers.outcome import Outcome, Peer
 from bedchain.solver_process import Progress, on_ranks, run_logged
 
@@ -24,18 +26,16 @@ def run(bed: Bed, folder: Path, duration_s: float, solver: Path, ranks: int) -> 
         "end_time": end_s,
         "start_step": 0,
         "row_every": 1,
-        "deck": DECKS / "verify/in.exchange",
-        "decks": DECKS,
-        "parameters": folder / "parameters.lig",
-        "restart": folder / "particles.data",
-        "output": folder,
+        "deck": str(DECKS / "verify/in.exchange"),
+        "decks": str(DECKS),
+        "parameters": str(folder / "parameters.lig"),
+        "restart": str(folder / "particles.data"),
+        "output": str(folder),
     }
     gas = folder / "gas"
-    gas_case(GAS_CASE, gas, folder / "caseParameters", settings)
-    if ranks > 1:
-        run_logged(["decomposePar", "-case", str(gas)], gas / "mesh.log")
+    prepare_gas(gas, folder / "caseParameters", folder / "nothing", settings)
     command = [str(solver), "-case", str(gas)] + (["-parallel"] if ranks > 1 else [])
-    report = Progress(end_s)
+    report = Progress(end_s, every_s=math.inf)  # its totals are wanted, not its lines
     run_logged(on_ranks(command, ranks), folder / "bedFoam.log", report)
     series = pd.read_csv(gas / "bed_series.csv")
     spent, last = report.totals, series.iloc[-1]
@@ -54,7 +54,7 @@ def run(bed: Bed, folder: Path, duration_s: float, solver: Path, ranks: int) -> 
 
 def peers(solver: Path) -> list[Peer]:
     """bedFoam on one rank and on two."""
-    files = (solver, GAS_CASE / "0.orig", GAS_CASE / "constant", GAS_CASE / "system", *OWN_DECKS)
+    files = (solver, *(GAS_CASE / part for part in GAS_PARTS), *OWN_DECKS)
     names = {1: "bedFoam", 2: "bedFoam, 2 ranks"}
     return [
         Peer(name, str(solver), "", True, "", partial(run, solver=solver, ranks=ranks), 2e-7, files, ranks)

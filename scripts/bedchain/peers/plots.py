@@ -37,7 +37,8 @@ def draw(table: pd.DataFrame, stem: Path) -> None:
                 label=f"{name}, {own['particles'].max():.0f} particles",
             )  # fmt: skip
         axes.set_xscale("log")
-        axes.set_yticks(range(len(codes)), codes)
+        gas = set(done.dropna(subset="gas_step_s")["code"])
+        axes.set_yticks(range(len(codes)), [code if code in gas else f"{code} (no gas)" for code in codes])
         axes.grid(axis="x", which="major", linewidth=0.3)
         axes.margins(y=0.1)
         axes.set_xlabel("wall time per simulated second [s/s], median and range")

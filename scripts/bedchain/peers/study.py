@@ -2,6 +2,7 @@
 """Run every code on the same bed, in turns, and keep each finished run: a study that was stopped goes on."""
 
 import json
+import os
 import re
 import resource
 import shutil
@@ -18,6 +19,7 @@ from bedchain.segments import exclusive, input_stamp
 from bedchain.stage import complete
 
 CASES = Path("cases")
+STAT = Path("/proc/stat")
 START_S = {"short": 1.0, "paper": 0.5}  # of gas before the comparison [s]: the bed bubbles, or is about to
 OTHER_START_S = 0.5
 
@@ -32,8 +34,8 @@ class Run:
     repeat : int
         From 1.
     outcome : Outcome or None
-    processor_share : float
-        Processor time over wall time and ranks, of the whole program [1]: below 0.95 others were at work too.
+    others : float
+        Processors that other programs used meanwhile [1]: times say little where it is not small.
     note : str
         Why there is no outcome.
     """
@@ -42,7 +44,7 @@ class Run:
     code: str
     repeat: int
     outcome: Outcome | None
-    processor_share: float = 0.0
+    others: float = 0.0
     note: str = ""
 
 
@@ -74,13 +76,29 @@ def record_file(folder: Path, bed: Bed, peer: Peer, duration_s: float, repeat: i
     return folder / bed.name / "runs" / f"{stem}.json"
 
 
+def busy_time(stat: str) -> float:
+    """Processor time that all programs together have used since the machine started [s].
+
+    Parameters
+    ----------
+    stat : str
+        Content of ``/proc/stat``.
+    """
+    user, nice, system, _idle, _waiting, *interrupts = map(int, stat.split("\n", 1)[0].split()[1:9])
+    return (user + nice + system + sum(interrupts)) / os.sysconf("SC_CLK_TCK")
+
+
+def own_time() -> float:
+    """Processor time of this program and of those that it ran [s]."""
+    return sum(sum(resource.getrusage(who)[:2]) for who in (resource.RUSAGE_SELF, resource.RUSAGE_CHILDREN))
+
+
 def measure(peer: Peer, bed: Bed, folder: Path, duration_s: float) -> tuple[Outcome, float]:
-    """Run a code once; its outcome, and the share of the processor that it had [1]."""
-    before, start = resource.getrusage(resource.RUSAGE_CHILDREN), time.monotonic()
+    """Run a code once; its outcome, and the processors that other programs used meanwhile [1]."""
+    machine, own, start = busy_time(STAT.read_text()), own_time(), time.monotonic()
     outcome = peer.run(bed, folder, duration_s)
-    after, spent = resource.getrusage(resource.RUSAGE_CHILDREN), time.monotonic() - start
-    processor = after.ru_utime + after.ru_stime - before.ru_utime - before.ru_stime
-    return outcome, processor / (spent * peer.ranks)
+    used = busy_time(STAT.read_text()) - machine - (own_time() - own)
+    return outcome, max(used / (time.monotonic() - start), 0.0)
 
 
 def run_once(peer: Peer, bed: Bed, folder: Path, duration_s: float, repeat: int) -> Run:
@@ -90,10 +108,10 @@ def run_once(peer: Peer, bed: Bed, folder: Path, duration_s: float, repeat: int)
         kept = json.loads(record.read_text(encoding="utf-8"))
         return Run(**kept | {"outcome": Outcome(**kept["outcome"])})
     try:
-        outcome, share = measure(peer, bed, folder / bed.name / "work" / record.stem, duration_s)
+        outcome, others = measure(peer, bed, folder / bed.name / "work" / record.stem, duration_s)
     except UserError as error:
         return Run(bed.name, peer.name, repeat, None, note=f"failed: {error}")
-    run = Run(bed.name, peer.name, repeat, outcome, share)
+    run = Run(bed.name, peer.name, repeat, outcome, others)
     with complete(record) as temporary:
         temporary.write_text(json.dumps(asdict(run), indent=1), encoding="utf-8")
     shutil.rmtree(folder / bed.name / "work" / record.stem)
@@ -149,8 +167,11 @@ def compare(
     Raises
     ------
     UserError
-        There is no such case, no bedFoam, or another study is at work in the folder.
+        A number is not above 0, there is no such case, no bedFoam, or another study is at work in the folder.
     """
+    for key, value in {"repeats": repeats, "duration": duration_s, "longest": longest_s}.items():
+        if not value > 0:
+            raise UserError(f"--{key} {value}: must be above 0")
     if not solver.exists():
         raise UserError(f"there is no solver {solver}: run snakemake build_solver")
     found, runs = {}, []
