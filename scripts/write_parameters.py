@@ -36,7 +36,8 @@ def write_parameters(case_file: Path, folder: Path) -> None:
     require_disk(folder, run_bytes(case))
     write_if_changed(folder / "parameters.lig", liggghts_text(parameters))
     write_if_changed(folder / "caseParameters", openfoam_text(parameters))
-    print(fluidization_line(case))
+    if case["gas"]["model"] != "none":
+        print(fluidization_line(case))
 
 
 def write_if_changed(file: Path, text: str) -> None:
