@@ -2,36 +2,46 @@
 # The whole pipeline of one case, in its order: particles and gas, cells, chains, comparison, figures.
 #   snakemake --cores 2                        the case `short`
 #   snakemake --cores 2 --config case=paper    another case of cases/
+#   ... reference=simulate                     not from the archive cases/<case>/reference/, but by the solvers
 # A rule gets only the keys of the case that it needs: what a changed key does not touch does not run again.
 import sys
 
 sys.path.insert(0, f"{workflow.basedir}/scripts")
 
 from bedchain.parameters import weight_per_area
-from bedchain.workflow import case_or_exit, modules, pick, solver_values, source_files, table_values
+from bedchain.workflow import case_or_exit, modules, pick, reference_or_exit
+from bedchain.workflow import solver_values, source_files, table_values
 
 NAME = config.get("case", "short")
 CASE = case_or_exit(NAME)
+REFERENCE = reference_or_exit(config.get("reference"), NAME, CASE)
 RESULTS = f"results/{NAME}"
 FIGURES = f"results/{NAME}/figures"
 LOGS = f"logs/{NAME}"
 BENCHMARKS = f"benchmarks/{NAME}"
 MODELS = CASE["chain"]["models"]
 REPEATS = range(1, CASE["comparison"]["repeats"] + 1)
+OPTIONS = {model: CASE["chain"].get(model, {}) for model in MODELS}
 FORMS = {form: f".{form}" for form in ["png", "pdf", "csv"]}
+# the bed that all is made of, simulated or out of its archive
+RUN = {"dem": f"{RESULTS}/dem.json", "bed_series": f"{RESULTS}/bed_series.csv"}
 TRAJECTORY = {"trajectory": f"{RESULTS}/trajectory.npy", "metadata": f"{RESULTS}/trajectory.json"}
 CHAIN_FILES = {"best": "scores_best"}
+GAS = CASE["gas"]["model"] != "none"  # without it nothing of OpenFOAM is built or run
+DRUM = "liggghts_inputs/drum"
+AUDITED = ["bed", "particles", "contact", "gas", "drum"]
 MODEL_FIGURES = {"static": "fig3_static", "dynamic": "fig4_dynamic"}
 PLOTS = [
     "fig1_cells",
     "fig2_cost",
-    *map(MODEL_FIGURES.get, MODELS),
+    *(MODEL_FIGURES[model] for model in MODELS if model in MODEL_FIGURES),
     "fig5a_radial",
     "fig5b_axial",
-    "snapshot",
+    *(["snapshot"] if GAS else []),
     *(["fig_difference"] if {*MODEL_FIGURES} <= {*MODELS} else []),
     "fig_chapman_kolmogorov",
     "fig_timescales",
+    "fig_stationarity",
 ]
 SCORE_PLOTS = ["fig_pareto", "fig5_best", "fig_autocorrelation", "fig_distribution_best"]
 
@@ -45,8 +55,10 @@ rule all:
                 "mixing.csv",
                 "metrics.csv",
                 "diagnostics.csv",
+                "stationarity.csv",
                 "timing.csv",
                 "table1.csv",
+                "audit.csv",
                 "provenance.json",
             ],
         ),
@@ -76,7 +88,7 @@ rule verify:
 rule verify_solver:
     input:
         modules("case", "dumps", "errors", "figures", "gas_field", "parameters", "segments", "solver_process"),
-        modules("stage"),
+        modules("slab", "stage"),
         source_files("scripts/bedchain/verification", "*.py"),
         schema="cases/case.schema.yaml",
         solver=rules.build_solver.output.solver,
@@ -150,18 +162,34 @@ rule write_parameters:
         "python scripts/write_parameters.py {input.case} {params.folder} 2>&1 | tee {log} >&2"
 
 
+# First of all that can run: what it warns of is read before the particles have taken hours.
+rule audit_scene:
+    input:
+        modules("audit", "case", "scene_numbers", "stage"),
+    output:
+        audit=f"{RESULTS}/audit.csv",
+    log:
+        f"{LOGS}/audit_scene.log",
+    priority: 1
+    conda:
+        "envs/python.yaml"
+    params:
+        case={section: CASE[section] for section in AUDITED if section in CASE},
+    script:
+        "scripts/audit_scene.py"
+
+
 # Hours for a large bed, so no edit of a script reruns it. Its state, dem/, is no declared output:
 # snakemake deletes the outputs of a job that failed, and the segments must outlive that.
 rule run_dem:
     input:
         rules.write_parameters.output,
-        solver=rules.build_solver.output.solver,
-        decks=["liggghts_inputs/in.settle", "liggghts_inputs/in.fluidize"],
+        solver=rules.build_solver.output.solver if GAS else [],
+        decks=["liggghts_inputs/in.settle", "liggghts_inputs/in.fluidize"] if GAS else source_files(DRUM, "*"),
         blocks=source_files("liggghts_inputs/include", "*.in"),
-        gas=source_files("openfoam_case", "0.orig/*", "constant/*", "system/*"),
+        gas=source_files("openfoam_case", "0.orig/*", "constant/*", "system/*") if GAS else [],
     output:
-        dem=f"{RESULTS}/dem.json",
-        bed_series=f"{RESULTS}/bed_series.csv",
+        **RUN,
     log:
         f"{LOGS}/run_dem.log",
     benchmark:
@@ -181,7 +209,7 @@ rule run_dem:
 rule repeat_dem:
     input:
         rules.write_parameters.output,
-        dem=rules.run_dem.output.dem,
+        dem=RUN["dem"],
         solver=rules.build_solver.output.solver,
         decks=["liggghts_inputs/in.perturb", "liggghts_inputs/in.fluidize"],
         blocks=source_files("liggghts_inputs/include", "*.in"),
@@ -243,6 +271,32 @@ rule measure_mixing:
         "scripts/measure_mixing.py"
 
 
+# A bed that was simulated before and archived: what run_dem, parse_dumps and the repeats would leave behind.
+if REFERENCE:
+
+    ruleorder: unpack_reference > run_dem > parse_dumps > measure_mixing
+
+    rule unpack_reference:
+        input:
+            modules("archive", "packing", "stage", "trajectory"),
+            archive=source_files(REFERENCE, "*"),
+        output:
+            **TRAJECTORY,
+            **RUN,
+            gas=f"{RESULTS}/gas.npz",
+            repeats=expand(rules.measure_mixing.output.mixing, repeat=REPEATS),
+        log:
+            f"{LOGS}/unpack_reference.log",
+        benchmark:
+            f"{BENCHMARKS}/unpack_reference.tsv"
+        conda:
+            "envs/python.yaml"
+        params:
+            folder=str(REFERENCE),
+        script:
+            "scripts/unpack_reference.py"
+
+
 rule assign_cells:
     input:
         modules("cell_store", "grid", "stage", "trajectory"),
@@ -276,6 +330,7 @@ rule build_transitions:
         "envs/python.yaml"
     params:
         **pick(CASE, "learning", "chain.lag_s", "chain.estimator"),
+        options=lambda wildcards: OPTIONS[wildcards.model],
     script:
         "scripts/build_transitions.py"
 
@@ -298,6 +353,7 @@ rule run_chain:
     params:
         **pick(CASE, "comparison.start_s", "comparison.end_s", "mixing", "chain.estimator", "chain.seed"),
         **pick(CASE, "figures.batch_height_m", "figures.moments_s"),
+        options=lambda wildcards: OPTIONS[wildcards.model],
         learning=CASE["learning"],
     script:
         "scripts/run_chain.py"
@@ -310,7 +366,7 @@ rule compare_mixing:
         **TRAJECTORY,
         cells=rules.assign_cells.output.cells,
         chains=expand(rules.run_chain.output.chain, model=MODELS),
-        bed_series=rules.run_dem.output.bed_series,
+        bed_series=RUN["bed_series"],
         repeats=expand(f"{RESULTS}/repeats/{{repeat}}/mixing.csv", repeat=REPEATS),
     output:
         mixing=f"{RESULTS}/mixing.csv",
@@ -331,10 +387,31 @@ rule compare_mixing:
         "scripts/compare_mixing.py"
 
 
+rule plot_stationarity:
+    input:
+        modules("comparison", "figures", "frames", "stage", "stationarity", "trajectory"),
+        **TRAJECTORY,
+        bed_series=RUN["bed_series"],
+    output:
+        multiext(f"{FIGURES}/fig_stationarity", **FORMS),
+        stationarity=f"{RESULTS}/stationarity.csv",
+    log:
+        f"{LOGS}/plot_stationarity.log",
+    conda:
+        "envs/python.yaml"
+    params:
+        **pick(CASE, "mixing", "bed.thickness_m", "particles.diameter_m", "figures.resolution_dpi"),
+        start_s=CASE["learning"]["start_s"],
+        end_s=CASE["comparison"]["end_s"],
+        row_m=CASE["bed"]["height_m"] / CASE["cells"]["rows"],
+    script:
+        "scripts/plot_stationarity.py"
+
+
 rule diagnose_chains:
     input:
         modules(
-            "blocks", "cell_store", "counting", "diagnosis", "estimators", "frames", "grid", "markov_chain"
+            "blocks", "cell_store", "counting", "diagnosis", "diagnostics", "estimators", "frames", "grid", "markov_chain"
         ),
         modules("markov_check", "mixing", "models", "passage", "propagation", "stage"),
         **TRAJECTORY,
@@ -350,6 +427,7 @@ rule diagnose_chains:
         "envs/python.yaml"
     params:
         **pick(CASE, "mixing", "chain.models", "chain.estimator", "chain.seed"),
+        options=OPTIONS,
         learning=CASE["learning"],
         comparison=pick(CASE, "comparison.start_s", "comparison.end_s"),
     script:
@@ -392,7 +470,7 @@ rule time_models:
         ),
         modules("trajectory"),
         **TRAJECTORY,
-        dem=rules.run_dem.output.dem,
+        dem=RUN["dem"],
         cells=rules.assign_cells.output.cells,
         transitions=expand(rules.build_transitions.output.transitions, model=MODELS),
     output:
@@ -404,6 +482,7 @@ rule time_models:
     threads: workflow.cores or 1
     params:
         **pick(CASE, "mixing", "chain.models", "chain.estimator", "chain.seed"),
+        options=OPTIONS,
         learning=CASE["learning"],
         comparison=pick(CASE, "comparison.start_s", "comparison.end_s"),
     script:
@@ -509,7 +588,7 @@ rule plot_snapshot:
     input:
         modules("cell_store", "figures", "gas_field", "stage", "trajectory"),
         **TRAJECTORY,
-        dem=rules.run_dem.output.dem,
+        dem=RUN["dem"],
     output:
         multiext(f"{FIGURES}/snapshot", **FORMS),
     log:
@@ -589,7 +668,7 @@ rule score_models:
         modules("model_styles", "models", "regrid", "runs", "score_rows", "selection", "stage", "starts"),
         modules("storage", "trial"),
         **TRAJECTORY,
-        repeats=source_files(f"{RESULTS}/repeats", "trajectory.npy"),
+        repeats=expand(f"{RESULTS}/repeats/{{repeat}}/trajectory.npy", repeat=REPEATS),
     output:
         scores=f"{RESULTS}/scores.csv",
         selection=f"{RESULTS}/selection.csv",
@@ -606,7 +685,7 @@ rule score_models:
         **pick(CASE, "cells", "chain.lag_s", "chain.estimator", "chain.seed", "mixing"),
         **pick(CASE, "particles.diameter_m", "figures.batch_height_m", "figures.moments_s"),
         learning=CASE["learning"],
-        comparison=CASE["comparison"],
+        comparison=pick(CASE, "comparison.start_s", "comparison.end_s"),
     script:
         "scripts/score_models.py"
 
@@ -666,7 +745,7 @@ rule plot_autocorrelation:
 rule write_provenance:
     input:
         modules("case", "provenance", "stage"),
-        dem=rules.run_dem.output.dem,
+        dem=RUN["dem"],
         metrics=rules.compare_mixing.output.metrics,
         timing=rules.time_models.output.timing,
     output:

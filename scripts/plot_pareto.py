@@ -8,6 +8,7 @@ import pandas as pd
 from matplotlib import pyplot as plt
 from matplotlib.axes import Axes
 from matplotlib.lines import Line2D
+from matplotlib.ticker import NullFormatter
 
 from bedchain.errors import UserError
 from bedchain.figures import DOUBLE_COLUMN_IN, LINE_COLOUR, figure_style, save_figure
@@ -24,7 +25,7 @@ def plot_pareto(
     scores: Path, selection: Path, png: Path, pdf: Path, csv: Path,
     baseline_cell_m: float, baseline_lag_s: float, resolution_dpi: int,
 ) -> None:  # fmt: skip
-    """Draw rms errors over the processor time of the mixing curves, with the noise floor.
+    """Draw rms errors over the processor time of moving every particle, with the noise floor.
 
     Parameters
     ----------
@@ -47,15 +48,17 @@ def plot_pareto(
         raise UserError(f"{scores} holds no test of a model; delete it and run again")
     styles = model_styles(table["source"])
     with figure_style():
-        figure, panels = plt.subplots(1, 3, figsize=(DOUBLE_COLUMN_IN, 3.0), sharey=True)
+        figure, panels = plt.subplots(1, 3, figsize=(DOUBLE_COLUMN_IN, 3.0), sharex=True, sharey=True)
         _draw_validation(panels[0], table[table["panel"] == "validation"], styles)
         for axes, (panel, title) in zip(panels[1:], PANELS.items(), strict=True):
             _draw_test(axes, table[table["panel"] == panel], styles)
             axes.set_title(title, loc="left")
         for axes in panels:
-            axes.set(xscale="log", xlabel="processor time of the curves [s]")
+            axes.set(xscale="log")
+            axes.xaxis.set_minor_formatter(NullFormatter())
             axes.grid(axis="y", color="#e2e2e2", linewidth=0.5)
             axes.set_axisbelow(True)
+        panels[1].set_xlabel("processor time to move all particles over the comparison window [s]")
         panels[0].set_ylabel("rms error of the share [1]")
         panels[0].set_ylim(bottom=0)
         shown = [name for name in styles if (table["source"] == name).any()]
@@ -85,10 +88,15 @@ def pareto_table(
     keys = ["model", "cell_m", "lag_s", "options"]
     scores, selection = (table.fillna({"options": ""}) for table in (scores, selection))
     valid = selection.dropna(subset="validation_rms").rename(
-        columns={"run_s": "cost_s", "validation_rms": "error_1", "ci_low": "ci_low_1", "ci_high": "ci_high_1"}
+        columns={
+            "paths_s": "cost_s",
+            "validation_rms": "error_1",
+            "ci_low": "ci_low_1",
+            "ci_high": "ci_high_1",
+        }
     )
     parts = [valid.assign(panel="validation")]
-    cost = scores[scores["quantity"] == "run_time"].set_index(keys)["value"].rename("cost_s")
+    cost = scores[scores["quantity"] == "paths_time"].set_index(keys)["value"].rename("cost_s")
     names = {"value": "error_1", "ci_low": "ci_low_1", "ci_high": "ci_high_1", "noise_floor": "noise_floor_1"}
     for panel in PANELS:
         which = (scores["quantity"] == f"error_rms_{panel}") & (scores["window"] == WINDOW)
@@ -113,7 +121,7 @@ def _draw_validation(axes: Axes, table: pd.DataFrame, styles: dict[str, ModelSty
             mfc="white" if row.source == BASELINE else style.colour,
             mec="black" if row.chosen else style.colour, alpha=1 if row.chosen else 0.6,
         )  # fmt: skip
-    axes.set_title("validation, all four", loc="left")
+    axes.set_title("validation, all candidates", loc="left")
 
 
 def _draw_test(axes: Axes, table: pd.DataFrame, styles: dict[str, ModelStyle]) -> None:

@@ -79,7 +79,9 @@ def score_models(
     run = open_run("the run", trajectory, metadata)
     runs = [run, *open_repeats(repeats, run)]
     grid = Grid(run.width_m, run.height_m, columns, rows)
-    which, compared = (window(run.times_s, *part.values()) for part in (learning, comparison))
+    start_s, end_s = comparison["start_s"], comparison["end_s"]
+    which = window(run.times_s, learning["start_s"], learning["end_s"])
+    compared = window(run.times_s, start_s, end_s)
     if compared.start + 1 < which.stop:
         raise UserError("comparison.start_s is inside the learning window: take at least learning.end_s")
     splits, lag = (split_x_m, split_z_m), lag_frames(lag_s, run.interval_s)
@@ -89,9 +91,9 @@ def score_models(
     about = {"task": repr(task), "learning": learning, "comparison": comparison}
     kept = only(scores.parent / "candidates" / stamp([trajectory, metadata], about))
     table = select(tried, run, which, task, kept)
-    chosen = {one.model: one for one, mark in zip(tried, table["chosen"], strict=True) if mark}
+    chosen = {one.name: one for one, mark in zip(tried, table["chosen"], strict=True) if mark}
     winner = table.loc[table["best"] == 1, "model"].item()
-    held = hold_out(runs, grid, tuple(comparison.values()), spacing, splits, batch_height_m, moments_s)
+    held = hold_out(runs, grid, (start_s, end_s), spacing, splits, batch_height_m, moments_s)
     LOG.info("%d starts, %d frames apart; %d repeats; noise floor: spread between %s", len(held.starts),
              spacing, len(repeats), "runs" if held.repeated else "starts")  # fmt: skip
     dem = [dem_statistics(held, number) for number in range(len(runs))]
@@ -100,7 +102,7 @@ def score_models(
     for name, one in {**chosen, BASELINE: Candidate("static", columns, rows, lag)}.items():
         LOG.info("test of %s: %s", name, one.key)
         trials[name] = try_out(one, which, held, task, seed)
-        if name != BASELINE or one.key != chosen["static"].key:
+        if name != BASELINE or one not in chosen.values():
             labels = named(one, grid, run.interval_s)
             found += [labels | row for row in score_rows(trials[name], held)]
     write_csv(table, selection)

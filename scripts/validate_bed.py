@@ -17,31 +17,30 @@ AIMS = {"voidage_error_rms": 0.05, "particle_velocity_error_rms": 0.04}
 FINE_POINTS = 81  # of the drawn curve
 LABELS = {"voidage_1": "voidage [1]", "particle_velocity_m_s": "particle velocity [m/s]"}
 SIMULATED = "#0077bb"
-PANEL_IN = 1.9
+PANEL_IN, LEGEND_IN = 1.9, 0.3
 
 
 def draw(table: pd.DataFrame, curves: pd.DataFrame, png: Path, pdf: Path, resolution_dpi: int) -> None:
-    """A panel for each quantity and height: measured points, the simulated curve and its band."""
-    panels = list(table.groupby(["quantity", "height_m"], sort=False))
-    columns = -(-len(panels) // 2) if len(panels) > 1 else 1
+    """A row of panels for each quantity, one for each height: measured points, simulated curve and band."""
+    rows = [list(points.groupby("height_m")) for _, points in table.groupby("quantity", sort=False)]
+    size = DOUBLE_COLUMN_IN, PANEL_IN * len(rows) + LEGEND_IN
     with figure_style():
-        figure, axes = plt.subplots(
-            -(-len(panels) // columns), columns, squeeze=False, sharex=True,
-            figsize=(DOUBLE_COLUMN_IN, PANEL_IN * -(-len(panels) // columns)),
-        )  # fmt: skip
-        for axis in axes.flat[len(panels) :]:
-            axis.set_visible(False)
-        for axis, ((quantity, height), points) in zip(axes.flat, panels, strict=False):
-            curve = curves[(curves["quantity"] == quantity) & (curves["height_m"] == height)]
-            x = 1e3 * curve["position_x_m"]
-            axis.fill_between(x, curve["ci_low"], curve["ci_high"], color=SIMULATED, alpha=0.25, linewidth=0)
-            axis.plot(x, curve["simulated"], color=SIMULATED, label="simulated, 95 % band")
-            axis.plot(
-                1e3 * points["position_x_m"], points["measured"], "o", color=LINE_COLOUR, markersize=3,
-                markerfacecolor="none", label="measured",
-            )  # fmt: skip
-            axis.set(xlabel="x [mm]", ylabel=LABELS[str(quantity)], title=f"z = {1e3 * height:g} mm")
-        axes.flat[0].legend(loc="lower center")
+        figure, axes = plt.subplots(len(rows), max(map(len, rows)), squeeze=False, figsize=size)
+        for panels, heights in zip(axes, rows, strict=True):
+            for axis in panels[len(heights) :]:
+                axis.set_visible(False)
+            for axis, (height, points) in zip(panels, heights, strict=False):
+                quantity = points["quantity"].iloc[0]
+                curve = curves[(curves["quantity"] == quantity) & (curves["height_m"] == height)]
+                x, low, high = 1e3 * curve["position_x_m"], curve["ci_low"], curve["ci_high"]
+                axis.fill_between(x, low, high, color=SIMULATED, alpha=0.25, linewidth=0, label="95 % band")
+                axis.plot(x, curve["simulated"], color=SIMULATED, label="simulated")
+                style = {"color": LINE_COLOUR, "markersize": 3, "markerfacecolor": "none"}
+                axis.plot(1e3 * points["position_x_m"], points["measured"], "o", label="measured", **style)
+                axis.set(xlabel="x [mm]", ylabel=LABELS[quantity], title=f"z = {1e3 * height:g} mm")
+            for axis in panels[1:]:
+                axis.sharey(panels[0])
+        figure.legend(*axes[0, 0].get_legend_handles_labels(), loc="outside upper center", ncols=3)
         save_figure(figure, png, pdf, resolution_dpi)
 
 

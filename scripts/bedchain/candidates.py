@@ -4,6 +4,7 @@
 import json
 from collections.abc import Iterable
 from dataclasses import dataclass, field
+from itertools import product
 from typing import Any
 
 from bedchain.frames import DataError
@@ -24,6 +25,8 @@ class Candidate:
         Frames in a step.
     options : dict
         Keyword arguments of the model alone.
+    family : str
+        What it competes as, where one model stands for several; its model by default.
     """
 
     model: str
@@ -31,6 +34,12 @@ class Candidate:
     rows: int
     lag: int
     options: dict[str, Any] = field(default_factory=dict)
+    family: str = ""
+
+    @property
+    def name(self) -> str:
+        """What it competes as: of each name one setting is chosen."""
+        return self.family or self.model
 
     @property
     def options_text(self) -> str:
@@ -40,7 +49,7 @@ class Candidate:
     @property
     def key(self) -> str:
         """The whole candidate in one line, the same for the same settings."""
-        return f"{self.model} {self.columns}x{self.rows} lag {self.lag} {self.options_text}".strip()
+        return f"{self.name} {self.columns}x{self.rows} lag {self.lag} {self.options_text}".strip()
 
 
 @dataclass(frozen=True)
@@ -55,17 +64,30 @@ class Settings:
         Lags over that of the case [1].
     options : tuple of dict
         Keyword arguments of the model.
+    family : str
+        What all these compete as, where one model stands for several.
     """
 
     cells: tuple[float, ...] = (0.5, 1, 2)
     lags: tuple[int, ...] = (1, 2, 4, 8)
     options: tuple[dict[str, Any], ...] = field(default=({},))
+    family: str = ""
 
 
+# Classes of the velocity along x and z: none, of both alike, of the height alone.
+CLASSES = ({"classes": [1, 1]}, {"classes": [3, 3]}, {"classes": [5, 5]}, {"classes": [1, 5]})
 # A model that is not here is tried with the defaults of `Settings`. The dynamic chain needs cells finer than
 # a displacement to carry the velocity, and its pairs become too many to learn from at long lags.
-SETTINGS = {
-    "dynamic": Settings(cells=(0.25, 0.5, 1), lags=(1, 2, 4)),
+# The recurrence chain does not use the cells; its two baselines compete as models of their own.
+SETTINGS: dict[str, tuple[Settings, ...]] = {
+    "dynamic": (Settings(cells=(0.25, 0.5, 1), lags=(1, 2, 4)),),
+    "velocity_class": (Settings(lags=(1, 2, 4), options=CLASSES[1:]),),
+    "jump": (Settings(cells=(1, 2), lags=(1, 2, 4), options=CLASSES),),
+    "recurrence": (
+        Settings((1,), (2, 4), ({"segment_s": 0.2}, {"segment_s": 0.5}, {"segment_s": 1.0})),
+        Settings((1,), (4,), ({"order": "shuffled"},), "recurrence_shuffled"),
+        Settings((1,), (4,), ({"order": "replay"},), "recurrence_replay"),
+    ),
 }
 
 
@@ -90,14 +112,12 @@ def candidates(models: Iterable[str], case_grid: Grid, case_lag: int, resolution
     """
     found: dict[str, Candidate] = {}
     for model in models:
-        settings = SETTINGS.get(model, Settings())
-        for size in settings.cells:
-            grid = scaled(case_grid, size)
-            if not _resolved(grid, resolution_m):
-                continue
-            for lag in settings.lags:
-                for options in settings.options:
-                    one = Candidate(model, grid.columns, grid.rows, lag * case_lag, options)
+        for tried in SETTINGS.get(model, (Settings(),)):
+            for size, lag, options in product(tried.cells, tried.lags, tried.options):
+                grid = scaled(case_grid, size)
+                if _resolved(grid, resolution_m):
+                    shape = (grid.columns, grid.rows, lag * case_lag)
+                    one = Candidate(model, *shape, options, tried.family)
                     found[one.key] = one
     return list(found.values())
 

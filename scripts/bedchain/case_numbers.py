@@ -9,6 +9,10 @@ PACKED_AREA_SHARE = 0.82  # area covered by one layer of random close-packed dis
 PACKED_VOLUME_SHARE = 0.6  # volume filled by spheres after a fall, between random loose and random close
 START_SPACING_DIAMETERS = 1.15  # of the loose lattice that the particles fall from: no contact at the start
 
+# Distance of the layers of closest-packed spheres, in diameters: a slab as thick makes of closest discs,
+# 0.907 of the plane, closest spheres, 0.740 of space
+LAYER_DISTANCE = math.sqrt(2 / 3)
+
 
 def ratio(length: float, unit: float) -> Fraction:
     """``length / unit``, exact for numbers as they are written in a file (0.025 / 2e-5 is 1250)."""

@@ -13,7 +13,7 @@ from typing import Any, Protocol
 import numpy as np
 from numpy.typing import NDArray
 
-from bedchain import dynamic, static, velocity_class
+from bedchain import dynamic, jump, recurrence, static, velocity_class
 from bedchain.frames import DataError, Frames
 from bedchain.grid import Grid
 from bedchain.markov_chain import MarkovChain
@@ -89,11 +89,15 @@ LEARNERS: dict[str, Callable[..., Chain]] = {
     "static": static.learn,
     "dynamic": dynamic.learn,
     "velocity_class": velocity_class.learn,
+    "jump": jump.learn,
+    "recurrence": recurrence.learn,
 }
 READERS: dict[str, Callable[[dict[str, NDArray[Any]]], Chain]] = {
     "static": MarkovChain.from_arrays,
     "dynamic": MarkovChain.from_arrays,
     "velocity_class": MarkovChain.from_arrays,
+    "jump": jump.JumpChain.from_arrays,
+    "recurrence": recurrence.RecurrenceChain.from_arrays,
 }
 
 # Optional: for models that learn faster from other weights of the same steps.

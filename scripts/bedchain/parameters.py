@@ -86,7 +86,16 @@ def derived_parameters(case: Case) -> list[Parameter]:
         _steps("settle_steps", time, "settle_s"),
         _steps("frame_steps", time, "frame_interval_s"),
         Parameter("dump_suffix", DUMP_SUFFIX[case["run"]["dump_format"]], "name", "run.dump_format"),
+        *drum_parameters(case),
     ]
+
+
+def drum_parameters(case: Case) -> list[Parameter]:
+    """How fast a drum turns; nothing for a bed in a box."""
+    if "drum" not in case:
+        return []
+    speed = 2 * math.pi / case["drum"]["revolution_s"]
+    return [Parameter("drum_speed", speed, "rad/s", "2 pi / drum.revolution_s")]
 
 
 def weight_per_area(case: Case) -> float:

@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Runs of one bed, the one learned from and its repeats: their frames on any grid of cells."""
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 
 import numpy as np
@@ -12,6 +12,11 @@ from bedchain.frames import TIME_TOLERANCE, Frames, check_times, window
 from bedchain.grid import Grid
 from bedchain.stage import LOG
 from bedchain.trajectory import open_trajectory
+
+# how far back a chain may look at most, in frames of the run that a repeat branches off from
+PAST_FRAMES = 64
+# positions of one state written twice differ by less, over the width of the bed
+SAME_PLACE = 1e-6
 
 
 @dataclass(frozen=True)
@@ -30,6 +35,8 @@ class Run:
         Size of the bed [m].
     has_velocities : bool
         Whether the last two rows hold numbers.
+    past : (n_past, 4, n_particles) array, optional
+        What came before the first frame, where another run holds it.
     """
 
     name: str
@@ -38,6 +45,7 @@ class Run:
     width_m: float
     height_m: float
     has_velocities: bool = True
+    past: NDArray[np.floating] | None = None
 
     @property
     def interval_s(self) -> float:
@@ -58,12 +66,37 @@ class Run:
         Frames
             Without velocities where the run has none: models take differences of positions then.
         """
-        values = self.values[which]
-        cells = np.stack(
-            [grid.cell_of(now[0], now[1], frame) for frame, now in enumerate(values, which.start)]
-        )
+        return self._made(grid, self.values[which], self.times_s[which], which.start)
+
+    def leading_to(self, grid: Grid, frame: int, before: int) -> Frames:
+        """A frame and those before it that a chain may look back to, as far as there are any.
+
+        Parameters
+        ----------
+        grid : Grid
+        frame : int
+            The last frame given.
+        before : int
+            Frames wanted before it [1].
+
+        Returns
+        -------
+        Frames
+        """
+        values, first = self.values[max(0, frame - before) : frame + 1], max(0, frame - before)
+        lacking = before - frame
+        if lacking > 0 and self.past is not None:
+            values = np.concatenate((self.past[-lacking:], values))
+            first = frame + 1 - len(values)
+        times = self.times_s[0] + self.interval_s * np.arange(first, frame + 1)
+        return self._made(grid, values, times, first)
+
+    def _made(
+        self, grid: Grid, values: NDArray[np.floating], times_s: NDArray[np.float64], first: int
+    ) -> Frames:
+        cells = np.stack([grid.cell_of(now[0], now[1], frame) for frame, now in enumerate(values, first)])
         vx, vz = (values[:, 2], values[:, 3]) if self.has_velocities else (None, None)
-        return Frames(self.times_s[which], values[:, 0], values[:, 1], cells, vx, vz)
+        return Frames(times_s, values[:, 0], values[:, 1], cells, vx, vz)
 
 
 def open_run(name: str, trajectory: Path, metadata: Path) -> Run:
@@ -132,7 +165,18 @@ def open_repeats(paths: list[Path], main: Run) -> list[Run]:
                     f"{path} is no repeat of the bed: {found:g} {what}, {wanted:g} expected; "
                     "remove its folder or simulate it with the case's numbers"
                 )
-    return runs
+    return [_with_past(run, main) for run in runs]
+
+
+def _with_past(run: Run, main: Run) -> Run:
+    """A repeat that branches off from a frame of the main run, with what came before in that run."""
+    frame = round((run.times_s[0] - main.times_s[0]) / main.interval_s)
+    if not 0 < frame < len(main.times_s):
+        return run
+    apart = np.abs(run.values[0, :2] - main.values[frame, :2]).max()
+    if apart > SAME_PLACE * run.width_m:
+        return run
+    return replace(run, past=main.values[max(0, frame - PAST_FRAMES) : frame])
 
 
 def part_of(run: Run, start_s: float, end_s: float) -> slice:

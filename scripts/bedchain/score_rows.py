@@ -80,7 +80,7 @@ def score_rows(trial: Trial, held: HeldOut) -> list[Row]:
         rows += fluctuation_rows(trial.drawn, held, window, which)
     rows += lagrangian_rows(*map(list, zip(*trial.lagrangian, strict=True)))
     rows += dispersion_rows(trial.lagrangian)
-    rows += [row(f"{name}_time", cost, unit="s") for name, cost in trial.cost_s.items()]
+    rows += [row(name.replace("_s", "_time"), cost, unit="s") for name, cost in trial.cost_s.items()]
     named = [(*name.rpartition("_")[::2], value) for name, value in trial.chain.report.items()]
     return rows + [row(f"learned_{quantity}", value, unit=unit) for quantity, unit, value in named]
 
@@ -139,10 +139,13 @@ def batch_rows(error: Array, held: HeldOut, window: str, which: NDArray[np.bool_
 
 
 def fluctuation_rows(curves: Array, held: HeldOut, window: str, which: NDArray[np.bool_]) -> list[Row]:
-    """Size of single curves' fluctuations about their running mean; the floor column holds the DEM's."""
+    """Size of single curves' fluctuations about their running mean; the floor column holds the DEM's.
+
+    The first running mean reaches back to `FLUCTUATION_S` after the start: before that, curves fall steeply.
+    """
     half = max(1, round(FLUCTUATION_S / held.interval_s))
     weights, rows = held.weights(which), []
-    own, dem = (fluctuation(array[which], half) for array in (curves, held.curves))
+    own, dem = (fluctuation(array[which, half:], half) for array in (curves, held.curves))
     for side, columns in SIDES.items():
         picked = own[:, :, columns]
         if np.isfinite(picked).any():

@@ -20,7 +20,7 @@ from bedchain import models
 from bedchain.candidates import Candidate, grid_of
 from bedchain.cell_store import HISTORY_LAGS
 from bedchain.errors import UserError
-from bedchain.frames import DataError, Frames
+from bedchain.frames import DataError, Frames, lag_frames
 from bedchain.grid import Grid
 from bedchain.mixing import remaining_from_positions
 from bedchain.runs import Run
@@ -30,8 +30,9 @@ from bedchain.starts import Start, split, starts_in
 
 Made = TypeVar("Made")
 Result = dict[str, Any]
-# a kernel is timed up to so many times until they took so long together; the least of all counts
-REPEATS, ENOUGH_S = 4, 0.5
+# a kernel is timed so many times, or fewer once they took so long together; the least of all counts, since
+# the first may have to load compiled code, which takes about a second
+REPEATS, ENOUGH_S = 4, 2.0
 REPLICATES = 1000
 # of the intervals only: the same data give the same interval
 INTERVAL_SEED = 17
@@ -78,7 +79,7 @@ def learned(candidate: Candidate, frames: Frames, task: Task) -> models.Chain:
 
 def leading_to(run: Run, grid: Grid, frame: int, lag: int) -> Frames:
     """Frames up to a start, with those before it that a chain may look back to."""
-    return run.frames(grid, slice(max(0, frame - HISTORY_LAGS * lag), frame + 1))
+    return run.leading_to(grid, frame, HISTORY_LAGS * lag)
 
 
 def observed_curves(run: Run, start: Start, splits: tuple[float, float]) -> NDArray[np.float64]:
@@ -130,11 +131,11 @@ def validated(candidate: Candidate, run: Run, learning: slice, task: Task) -> Re
     Returns
     -------
     dict
-        validation_rms, ci_low, ci_high (of the four curves over all starts and frames), learn_s and run_s
-        (mixing curves over the length of the comparison window), problem (empty where all went well).
+        validation_rms, ci_low, ci_high (of the four curves over all starts and frames), starts, learn_s,
+        curves_s and paths_s (`running_cost`), problem (empty where all went well).
     """
     result: Result = {"validation_rms": np.nan, "ci_low": np.nan, "ci_high": np.nan}
-    result |= {"starts": 0, "learn_s": np.nan, "run_s": np.nan, "problem": ""}
+    result |= {"starts": 0, "learn_s": np.nan, "curves_s": np.nan, "paths_s": np.nan, "problem": ""}
     fit, part = split(learning)
     starts = starts_in(part, task.spacing)
     if candidate.lag > min(start.length for start in starts):
@@ -150,9 +151,7 @@ def validated(candidate: Candidate, run: Run, learning: slice, task: Task) -> Re
             )
             for start in starts
         ]
-        begin = leading_to(run, chain.grid, starts[0].frame, candidate.lag)
-        steps = -(-task.comparison // candidate.lag)
-        _, run_s = timed(lambda: chain.mixing(begin, *task.splits, steps))
+        cost = running_cost(chain, leading_to(run, chain.grid, starts[0].frame, candidate.lag), task)
     except DataError as problem:
         return result | {"problem": str(problem)}
     error = stacked([model[1:] - dem[1:] for model, dem in pairs])
@@ -160,8 +159,29 @@ def validated(candidate: Candidate, run: Run, learning: slice, task: Task) -> Re
     low, high = interval(rms, error, weights)
     return result | {
         "validation_rms": float(rms(error)), "ci_low": low, "ci_high": high, "starts": len(starts),
-        "learn_s": learn_s, "run_s": run_s,
+        "learn_s": learn_s, **cost,
     }  # fmt: skip
+
+
+def running_cost(chain: models.Chain, begin: Frames, task: Task) -> dict[str, float]:
+    """Processor time of a chain over the length of the comparison window, data in memory.
+
+    Returns
+    -------
+    dict
+        curves_s: the expected mixing curves; paths_s: every particle moved, which all models and the DEM do
+        alike [s].
+    """
+    steps = -(-task.comparison // lag_frames(chain.lag_s, begin.interval_s))
+
+    def paths() -> None:
+        for _ in chain.paths(begin, steps, np.random.default_rng(INTERVAL_SEED)):
+            pass
+
+    return {
+        "curves_s": timed(lambda: chain.mixing(begin, *task.splits, steps))[1],
+        "paths_s": timed(paths)[1],
+    }
 
 
 def select(tried: Sequence[Candidate], run: Run, learning: slice, task: Task, kept: Path) -> pd.DataFrame:
@@ -220,7 +240,7 @@ def named(candidate: Candidate, case_grid: Grid, interval_s: float) -> Result:
     """The columns that say which candidate a row of a table is of."""
     grid = grid_of(candidate, case_grid)
     return {
-        "model": candidate.model,
+        "model": candidate.name,
         "cell_m": grid.cell_width_m,
         "lag_s": candidate.lag * interval_s,
         "options": candidate.options_text,

@@ -12,7 +12,7 @@ from bedchain.frames import Frames
 # of the learning window; the paper's 10-15 s is fitted on 10-13.5 s and validated on 13.5-15 s
 FIT_SHARE = 0.7
 # more starts than this cost time and say little more: a window holds only so many bubbles
-MOST_STARTS = 8
+MOST_STARTS = 5
 
 
 @dataclass(frozen=True)

@@ -13,7 +13,7 @@ from bedchain.held_out import HeldOut
 from bedchain.lagrangian import Places, Statistics, corrected, in_cells, statistics
 from bedchain.regrid import regrid
 from bedchain.scores import stacked
-from bedchain.selection import Task, at_frames, leading_to, learned, predicted_curves, timed
+from bedchain.selection import Task, at_frames, leading_to, learned, predicted_curves, running_cost, timed
 from bedchain.starts import Start
 
 Array = NDArray[np.float64]
@@ -46,7 +46,7 @@ class Trial:
     lagrangian : list of (model, dem) Statistics
         Of each run, from the start of the window.
     cost_s : dict of str to float
-        learn, run (mixing curves) and paths (every particle) over the comparison window [s].
+        learn_s, and those of `selection.running_cost` [s].
     """
 
     chain: models.Chain
@@ -96,7 +96,8 @@ def try_out(candidate: Candidate, learning: slice, held: HeldOut, task: Task, se
         one = chain.mixing(begin, *task.splits, -(-start.length // lag), rng)
         drawn.append(at_frames(one, lag, start.length))
     lagrangian = [lagrangian_of(chain, held, number, lag, rng) for number in range(len(held.runs))]
-    cost = {"learn": learn_s} | running_cost(chain, held, task, lag, seed)
+    first = leading_to(run, grid, held.starts[0].frame, lag)
+    cost = {"learn_s": learn_s} | running_cost(chain, first, task)
     return Trial(chain, lag, stacked(curves), _padded(densities, held), stacked(drawn), lagrangian, cost)
 
 
@@ -136,21 +137,6 @@ def batch_shares(
     part = (moments / lag - before)[:, None]
     one, two = (found[np.searchsorted(steps, end)] for end in (before, after))
     return np.asarray((1 - part) * one + part * two)
-
-
-def running_cost(chain: models.Chain, held: HeldOut, task: Task, lag: int, seed: int) -> dict[str, float]:
-    """Least time for the mixing curves, and for every particle's path, over the comparison window [s]."""
-    begin = leading_to(held.runs[0], chain.grid, held.starts[0].frame, lag)
-    steps = -(-task.comparison // lag)
-
-    def paths() -> None:
-        for _ in chain.paths(begin, steps, np.random.default_rng(seed)):
-            pass
-
-    return {
-        "run": timed(lambda: chain.mixing(begin, *task.splits, steps))[1],
-        "paths": timed(paths)[1],
-    }
 
 
 def lagrangian_of(

@@ -8,6 +8,7 @@ import pandas as pd
 import pytest
 
 from bedchain import models
+from bedchain.markov_chain import MarkovChain
 
 # row sums and masses: round-off of some hundred additions
 ROUND_OFF = 1e-10
@@ -33,7 +34,8 @@ def sources(case):
 def test_chains_keep_their_particles(results, case):
     for model in case["chain"]["models"]:
         chain = models.load(results / f"transitions_{model}.npz")
-        np.testing.assert_allclose(chain.matrix.sum(axis=1), 1, atol=ROUND_OFF)
+        if isinstance(chain, MarkovChain):
+            np.testing.assert_allclose(chain.matrix.sum(axis=1), 1, atol=ROUND_OFF)
         with np.load(results / f"chain_{model}.npz") as run:
             for name in ("batch_share", "batch_share_monte_carlo"):
                 assert (run[name] >= 0).all()
@@ -53,7 +55,8 @@ def test_monte_carlo_agrees_with_the_exact_expectation(results, case, metrics):
 
 def test_mixing_table_is_complete(mixing, case):
     assert list(mixing.columns) == MIXING_COLUMNS
-    assert list(dict.fromkeys(mixing["source"])) == sources(case)
+    repeats = [f"dem_{number}" for number in range(1, case["comparison"]["repeats"] + 1)]
+    assert list(dict.fromkeys(mixing["source"])) == ["dem", *repeats, *sources(case)[1:]]
     assert mixing["fraction_remaining_1"].between(0, 1).all()
     for (_, group), curve in mixing.groupby(["source", "group"]):
         assert set(curve["direction"]) == {GROUPS[group]}
@@ -79,6 +82,19 @@ def test_metrics_are_complete_and_finite(results, metrics, case):
     assert (banded["ci_low"] <= banded["ci_high"]).all()
 
 
+def test_repeats_give_a_noise_floor_beside_every_error(metrics, case):
+    repeats = case["comparison"]["repeats"]
+    assert (("dem", "realisations") in metrics.index) == (repeats > 0)
+    for group in GROUPS if repeats else ():
+        floor = metrics.loc[("dem", f"noise_floor_{group}")]
+        assert 0 < floor["ci_low"] < floor["value"] < floor["ci_high"]
+        for source in sources(case)[1:]:
+            over = metrics.loc[(source, f"error_over_noise_{group}"), "value"]
+            error = metrics.loc[(source, f"error_rms_{group}"), "value"]
+            assert over == pytest.approx(error / floor["value"], rel=1e-6)
+            assert (source, f"error_rms_of_mean_{group}") in metrics.index
+
+
 def test_shares_of_both_sides_make_one(metrics):
     for when in ("start", "end", "mean"):
         for sides in (("left", "right"), ("low", "up")):
@@ -90,11 +106,10 @@ def test_shares_of_both_sides_make_one(metrics):
 def test_timing_has_the_dem_and_every_chain(results, case):
     timing = pd.read_csv(results / "timing.csv")
     assert list(timing.columns) == TIMING_COLUMNS
-    kinds = ("count", "matrix", "exact", "monte_carlo")
-    assert set(timing["stage"]) >= {
-        "dem",
-        *(f"{m}_{kind}" for m in case["chain"]["models"] for kind in kinds),
-    }
+    both = ("exact", "monte_carlo")
+    kinds = {"static": ("count", "matrix", *both), "dynamic": ("count", "matrix", *both)}
+    for model in case["chain"]["models"]:
+        assert set(timing["stage"]) >= {"dem", *(f"{model}_{k}" for k in kinds.get(model, ("learn", *both)))}
     assert (timing["wall_s"] > 0).all()
 
 

@@ -6,7 +6,7 @@ from pathlib import Path
 
 import pytest
 
-from bedchain.case import load_case, load_schema, schema_keys
+from bedchain.case import case_value, load_case, load_schema, schema_keys
 from bedchain.case_numbers import (
     courant_number,
     is_multiple,
@@ -72,12 +72,13 @@ def problem_of(file: Path, key: str):
     return found[0]
 
 
-@pytest.mark.parametrize("name", ["short", "paper", "mueller"])
+@pytest.mark.parametrize("name", ["short", "paper", "mueller", "drum"])
 def test_shipped_cases_load_with_every_key(name):
     case = load_case(ROOT / "cases" / name / "case.yaml")
     for key in schema_keys(load_schema()):
-        section, _, last = key.rpartition(".")
-        assert last in (case[section] if section else case), key
+        if key.startswith("drum.") and name != "drum":
+            continue
+        assert case_value(case, key) is not None, key
 
 
 def test_paper_case_has_all_the_values_of_the_paper():
@@ -151,7 +152,7 @@ MISTAKES = [
     ("number: 7200", "number: 90000", "particles.number", "at most"),
     ("width_m: 0.09", "width_m: 9.0e-4", "bed.width_m", "narrower than a particle"),
     ("width_m: 0.09", "width_m: 0.09\n  layers: two", "bed.layers", "one, many"),
-    ("width_m: 0.09", "width_m: 0.09\n  thickness_m: 9.0e-4", "bed.thickness_m", "narrower than a particle"),
+    ("width_m: 0.09", "width_m: 0.09\n  thickness_m: 7.0e-4", "bed.thickness_m", "narrower than a particle"),
     (
         "width_m: 0.09",
         "width_m: 0.09\n  layers: many\n  thickness_m: 1.1e-3",

@@ -241,10 +241,10 @@ void bedFoam::DemCoupling::applyForces
         {
             // Across a single layer even a force of round-off would make the bed buckle. Where one gas cell spans
             // many layers the gas does not move across them and its pressure is even, but it still drags
-            const bool solved = mesh_.solutionD()[d] > 0;
-            const double drag = solved || freeAcross_ ? particle.drag*(around[d] - particle.undragged[d]) : 0;
+            const bool drags = mesh_.solutionD()[d] > 0 || freeAcross_;
+            const double drag = drags ? particle.drag*(around[d] - particle.undragged[d]) : 0;
             const double buoyancy = d == 2 ? volume_*gasDensity_*gravity_ : 0;
-            const double pressure = solved ? -volume_*gasDensity_*around[d + 3] : 0;
+            const double pressure = mesh_.solutionD()[d] > 0 ? -volume_*gasDensity_*around[d + 3] : 0;
             force[i][d] = drag + pressure + buoyancy;
             dragged[i][d] = velocity[i][d] + interval_*drag/mass_;
             dragOnParticles[d] += drag;

@@ -31,8 +31,8 @@ bedFoam::Guards::Guards
 {
     const std::vector<Plane> planes
     {
-        {"left", 0, 0}, {"right", 0, parameters.get<scalar>("width")}, {"bottom", 2, 0},
-        {"front", 1, parameters.get<scalar>("slab_low")}, {"back", 1, parameters.get<scalar>("slab_high")}
+        {"left", 0, 0, 1}, {"right", 0, parameters.get<scalar>("width"), -1}, {"bottom", 2, 0, 1},
+        {"front", 1, parameters.get<scalar>("slab_low"), 1}, {"back", 1, parameters.get<scalar>("slab_high"), -1}
     };
     // A bed of one layer has no walls in front and behind
     for (const Plane& plane : planes) if (dem.hasFix(plane.name)) walls_.push_back(plane);
@@ -112,8 +112,9 @@ void bedFoam::Guards::checkOverlap(const Liggghts& dem)
 
 void bedFoam::Guards::checkParticles(const Liggghts& dem)
 {
-    checkNumber(dem);
+    // A burst of overlaps throws particles out: it is the cause that is told
     checkOverlap(dem);
+    checkNumber(dem);
 }
 
 void bedFoam::Guards::checkVoidage(const DemCoupling& particles) const

@@ -158,7 +158,7 @@ void bedFoam::Liggghts::deepestAt(const Plane& wall, Overlap& deepest) const
     const double* radius = dem_->atom->radius;
     for (int i = 0; i < count(); ++i)
     {
-        const double depth = 0.5 - std::abs(x[i][wall.axis] - wall.position)/(2*radius[i]);
+        const double depth = 0.5 - wall.inward*(x[i][wall.axis] - wall.position)/(2*radius[i]);
         if (depth > deepest.depth) deepest = {depth, {x[i][0], x[i][1], x[i][2]}, id(i), "the wall " + wall.name};
     }
 }
