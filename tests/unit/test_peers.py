@@ -231,7 +231,7 @@ def test_medians_and_ratios_by_hand(bed, tmp_path):
     found = ratios(table).set_index("quantity")
     assert found["met"].tolist() == ["yes", "no", "yes", "", ""]
     assert found["value"].tolist() == pytest.approx([0.2 / 1.2, 1.5, 10, 1, 1])
-    assert "gas and exchange over DEM, one rank [1] | 0.167 | <= 0.2 | yes" in markdown(table, ratios(table))
+    assert "gas and exchange over DEM, one rank [1] | 0.1667 | <= 0.2 | yes" in markdown(table, ratios(table))
     small = ratios(table.assign(particles=9000))
     assert small["met"].eq("").all() and small["target"].eq("").all()
 

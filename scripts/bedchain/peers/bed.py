@@ -126,16 +126,17 @@ def fluidized_bed(case_file: Path, folder: Path, solver: Path, start_s: float) -
         raise UserError(f"{case_file}: bed.layers: the comparison runs beds of one layer; take another case")
     folder.mkdir(parents=True, exist_ok=True)
     given = folder / "parameters.lig"
-    given.write_text(liggghts_text(with_numbers(bed.parameters, start=start_s)), encoding="utf-8")
-    decks = [DECKS / "in.settle", DECKS / "in.fluidize", *sorted((DECKS / "include").glob("*.in"))]
-    target = folder / input_stamp([given, *decks], 1)
-    if not (target / SETTLED).exists():
-        with whole_folder(target / SETTLED) as part:
+    given.write_text(liggghts_text(bed.parameters), encoding="utf-8")
+    includes = sorted((DECKS / "include").glob("*.in"))
+    settled = folder / f"{SETTLED}_{input_stamp([given, DECKS / 'in.settle', *includes], 1)}"
+    moving = folder / f"{MOVING}_{input_stamp([given, DECKS / 'in.fluidize', *includes], 1, f'{start_s:g}')}"
+    if not settled.exists():
+        with whole_folder(settled) as part:
             _settle(bed, part)
-    if not (target / MOVING).exists():
-        with whole_folder(target / MOVING) as part:
-            np.save(part / START, _moving_particles(bed, target / SETTLED, part, solver, start_s))
-    return replace(bed, particles=np.load(target / MOVING / START))
+    if not moving.exists():
+        with whole_folder(moving) as part:
+            np.save(part / START, _moving_particles(bed, settled, part, solver, start_s))
+    return replace(bed, particles=np.load(moving / START))
 
 
 def _write_parameters(bed: Bed, folder: Path, frame_steps: int) -> Path:

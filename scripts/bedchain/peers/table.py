@@ -142,7 +142,7 @@ def markdown(table: pd.DataFrame, found: pd.DataFrame) -> str:
         if len(busy):
             parts.append(f"- other programs were at work during {', '.join(busy)}: their times are too long")
         parts.append("")
-    shown = [[row.bed, row.quantity, f"{row.value:.3g}", row.target, row.met] for row in found.itertuples()]
+    shown = [[row.bed, row.quantity, f"{row.value:.4g}", row.target, row.met] for row in found.itertuples()]
     return "\n".join([*parts, _grid(["bed", "quantity", "value", "target", "met"], shown)])
 
 
