@@ -127,7 +127,7 @@ def test_expected_curves_are_the_mean_of_paths(order):
     chain, start = models.learn("recurrence", frames, grid, order=order), frames.part(slice(20, 22))
     expected = chain.mixing(start, 0.025, 0.045, 15)
     drawn = np.array([chain.mixing(start, 0.025, 0.045, 15, np.random.default_rng(s)) for s in range(40)])
-    error = drawn.std(axis=0, ddof=1) * np.sqrt(1 / 40 + 1 / chain.runs(300))
+    error = drawn.std(axis=0, ddof=1) * np.sqrt(1 / 40 + 1 / chain.expected_paths)
     assert (np.abs(drawn.mean(axis=0) - expected) < 4.5 * error + 1e-12).all()
     assert (expected == chain.mixing(start, 0.025, 0.045, 15)).all()
 
