@@ -9,7 +9,7 @@ import sys
 sys.path.insert(0, f"{workflow.basedir}/scripts")
 
 from bedchain.parameters import weight_per_area
-from bedchain.workflow import case_or_exit, modules, pick, reference_or_exit
+from bedchain.workflow import case_or_exit, cell_size, modules, pick, reference_or_exit
 from bedchain.workflow import solver_values, source_files, table_values
 
 NAME = config.get("case", "short")
@@ -37,6 +37,7 @@ PLOTS = [
     "fig_chapman_kolmogorov",
     "fig_timescales",
     "fig_stationarity",
+    *(["fig_discussion"] if {*MODEL_FIGURES} & {*MODELS} else []),
 ]
 
 
@@ -345,6 +346,48 @@ rule plot_stationarity:
         row_m=CASE["bed"]["height_m"] / CASE["cells"]["rows"],
     script:
         "scripts/plot_stationarity.py"
+
+
+rule discuss_errors:
+    input:
+        modules("averaging", "comparison", "frames", "grid", "mixing", "models", "noise", "stage"),
+        modules("trajectory"),
+        **TRAJECTORY,
+        mixing=rules.compare_mixing.output.mixing,
+    output:
+        discussion=f"{RESULTS}/discussion.csv",
+    log:
+        f"{LOGS}/discuss_errors.log",
+    benchmark:
+        f"{BENCHMARKS}/discuss_errors.tsv"
+    conda:
+        "envs/python.yaml"
+    params:
+        **pick(CASE, "cells", "mixing", "discussion", "chain.lag_s", "chain.estimator"),
+        learning=CASE["learning"],
+        comparison=pick(CASE, "comparison.start_s", "comparison.end_s"),
+        names=[model for model in MODEL_FIGURES if model in MODELS],
+    script:
+        "scripts/discuss_errors.py"
+
+
+rule plot_discussion:
+    input:
+        modules("errors", "figures", "stage"),
+        discussion=rules.discuss_errors.output.discussion,
+    output:
+        multiext(f"{FIGURES}/fig_discussion", **FORMS),
+    log:
+        f"{LOGS}/plot_discussion.log",
+    conda:
+        "envs/python.yaml"
+    params:
+        **pick(CASE, "figures.resolution_dpi"),
+        own_cell_m=cell_size(CASE),
+        own_lag_s=CASE["chain"]["lag_s"],
+        colours={model: CASE["figures"][f"{model}_colour"] for model in MODELS},
+    script:
+        "scripts/plot_discussion.py"
 
 
 rule diagnose_chains:

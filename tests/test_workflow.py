@@ -37,7 +37,7 @@ ALL = {
     *("compare_mixing", "time_models", "plot_cells", "plot_cost", "plot_distribution", "plot_mixing"),
     *("plot_snapshot", "write_table", "write_provenance"),
     *("diagnose_chains", "plot_difference", "plot_chapman_kolmogorov", "plot_timescales"),
-    "plot_stationarity",
+    *("plot_stationarity", "discuss_errors", "plot_discussion"),
 }
 PARTICLES = {
     *("build_solver", "write_parameters", "run_dem", "parse_dumps", "repeat_dem", "measure_mixing"),
@@ -213,6 +213,7 @@ def test_another_repeat_runs_it_alone_and_what_compares(finished, case):
     }
     assert set(jobs) == {
         *("repeat_dem", "parse_dumps", "measure_mixing", "compare_mixing", "plot_mixing"),
+        *("discuss_errors", "plot_discussion"),
         *("write_table", "write_provenance"),
     }
 

@@ -222,6 +222,21 @@ def windows_lie_in_time(
         yield "comparison.start_s", wrong, f"take at least {learn_end:g}, or an earlier learning.end_s"
 
 
+@reads("discussion.cell_sizes_m", "discussion.lags_s", "particles.diameter_m", "time.frame_interval_s")
+def discussion_can_be_run(
+    sizes: list[float], lags: list[float], diameter: float, frame: float
+) -> Iterator[Finding]:
+    """Refuse cells smaller than a particle, and lags between frames."""
+    for size in sizes:
+        if size < diameter:
+            wrong = f"{size:g} m is smaller than a particle ({diameter:g} m)"
+            yield "discussion.cell_sizes_m", wrong, f"take at least {diameter:g}"
+    for lag in lags:
+        if not is_multiple(lag, frame):
+            wrong = f"{lag:g} s is no multiple of time.frame_interval_s ({frame:g} s)"
+            yield "discussion.lags_s", wrong, f"take {nearest_multiple(lag, frame):.10g}"
+
+
 @reads("comparison.repeats", "comparison.start_s", "time.segment_s")
 def repeats_start_at_a_segment(repeats: int, start: float, segment: float) -> Iterator[Finding]:
     """Refuse repeats that would start within a segment: the state is kept at its end only."""
