@@ -54,6 +54,7 @@ rule all:
                 "timing.csv",
                 "table1.csv",
                 "provenance.json",
+                *(["agreement.csv"] if source_files(f"cases/{NAME}", "claims.csv") else []),
             ],
         ),
 
@@ -605,6 +606,26 @@ rule plot_timescales:
         colours={model: CASE["figures"][f"{model}_colour"] for model in MODELS},
     script:
         "scripts/plot_timescales.py"
+
+
+# Where a case stands for a publication: its claims, one by one.
+rule write_agreement:
+    input:
+        modules("agreement", "stage"),
+        claims=f"cases/{NAME}/claims.csv",
+        metrics=rules.compare_mixing.output.metrics,
+        mixing=rules.compare_mixing.output.mixing,
+        timing=rules.time_models.output.timing,
+    output:
+        agreement=f"{RESULTS}/agreement.csv",
+    log:
+        f"{LOGS}/write_agreement.log",
+    conda:
+        "envs/python.yaml"
+    params:
+        **pick(CASE, "chain.models"),
+    script:
+        "scripts/write_agreement.py"
 
 
 rule write_provenance:

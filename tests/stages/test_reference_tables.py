@@ -128,7 +128,7 @@ def test_larger_cells_add_what_theory_says(discussion):
     counted = wide["dispersion_of_cells"] - wide["dispersion"]
     fine = wide.index.get_level_values("cell_m") < 0.03
     share = (counted / wide["dispersion_added"])[fine]
-    # walls and the rolls' own pattern make places in a cell uneven: less is added, the more so in larger cells
+    # walls and the rolls' own pattern make places in a cell uneven: less is added, least in large cells
     assert share.between(0.6, 1.05).all() and share.max() > 0.9
 
 
