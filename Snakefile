@@ -44,6 +44,7 @@ PLOTS = [
 rule all:
     input:
         expand(f"{FIGURES}/{{name}}{{form}}", name=PLOTS, form=FORMS.values()),
+        f"{FIGURES}/film.mp4",
         expand(
             f"{RESULTS}/{{name}}",
             name=[
@@ -554,6 +555,26 @@ rule plot_snapshot:
         colour_map=CASE["figures"]["snapshot_colour_map"],
     script:
         "scripts/plot_snapshot.py"
+
+
+rule make_film:
+    input:
+        modules("canvas", "cell_store", "figures", "frames", "models", "stage"),
+        **TRAJECTORY,
+        cells=rules.assign_cells.output.cells,
+        transitions=f"{RESULTS}/transitions_{MODELS[0]}.npz",
+    output:
+        film=f"{FIGURES}/film.mp4",
+    log:
+        f"{LOGS}/make_film.log",
+    conda:
+        "envs/python.yaml"
+    params:
+        **pick(CASE, "comparison.start_s", "comparison.end_s", "mixing.split_x_m", "chain.seed"),
+        **pick(CASE, "particles.diameter_m", "bed.thickness_m", "gas.cell_size_m"),
+        colours=[CASE["figures"][f"{half}_colour"] for half in ["left", "right"]],
+    script:
+        "scripts/make_film.py"
 
 
 rule plot_difference:

@@ -37,7 +37,7 @@ ALL = {
     *("compare_mixing", "time_models", "plot_cells", "plot_cost", "plot_distribution", "plot_mixing"),
     *("plot_snapshot", "write_table", "write_provenance"),
     *("diagnose_chains", "plot_difference", "plot_chapman_kolmogorov", "plot_timescales"),
-    *("plot_stationarity", "discuss_errors", "plot_discussion"),
+    *("plot_stationarity", "discuss_errors", "plot_discussion", "make_film"),
 }
 PARTICLES = {
     *("build_solver", "write_parameters", "run_dem", "parse_dumps", "repeat_dem", "measure_mixing"),
@@ -175,8 +175,13 @@ def test_another_grid_runs_the_cells_and_what_follows(finished, case):
         ("cost_colour", "red", {"plot_cost": 1}),
         ("distribution_colour_map", "magma", {"plot_distribution": 2}),
         ("dem_colour", "red", {"plot_mixing": 2, "plot_chapman_kolmogorov": 1}),
-        ("static_colour", "red", {"plot_mixing": 2, "plot_chapman_kolmogorov": 1, "plot_timescales": 1}),
+        (
+            "static_colour",
+            "red",
+            {"plot_mixing": 2, "plot_chapman_kolmogorov": 1, "plot_timescales": 1, "plot_discussion": 1},
+        ),
         ("snapshot_colour_map", "magma", {"plot_snapshot": 1}),
+        ("left_colour", "red", {"make_film": 1}),
     ],
 )
 def test_a_colour_runs_only_its_figure(finished, case, key, value, jobs):

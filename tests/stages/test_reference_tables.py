@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Repeats, discussion and stationarity of a small bed of known motion."""
 
+import imageio_ffmpeg
 import numpy as np
 import pandas as pd
 import pytest
@@ -25,6 +26,7 @@ from synthetic_bed import rolling_bed, write_run
 from bedchain.errors import UserError
 from compare_mixing import compare_mixing
 from discuss_errors import discuss_errors
+from make_film import make_film
 from measure_mixing import measure_mixing
 from parse_dumps import parse_dumps
 from plot_discussion import plot_discussion
@@ -149,3 +151,19 @@ def test_rolls_are_steady(bed, tmp_path):
     assert table.loc["pressure_drop", "stationary_1"] == 1
     assert (table.loc["voidage", "height_m"] < 0.13).all()
     assert all(file.stat().st_size > 1000 for file in forms(tmp_path, "fig"))
+
+
+def test_film_shows_every_step_and_moves(bed, tmp_path):
+    film = tmp_path / "film.mp4"
+    make_film(
+        *bed.frames, bed.transitions["static"], film, *COMPARE, SPLIT_X, DIAMETER, DIAMETER, 0.01,
+        ["#4477aa", "#ee7733"], seed=1, progress=False,
+    )  # fmt: skip
+    frames = imageio_ffmpeg.read_frames(str(film))
+    wide, high = next(frames)["size"]
+    pictures = [np.frombuffer(frame, np.uint8).reshape(high, wide, 3) for frame in frames]
+    assert len(pictures) == round((COMPARE[1] - COMPARE[0]) / LAG) + 1
+    ends = [pictures[at][:, : wide // 3].astype(int) for at in (0, -1)]
+    # one half is blue, the other orange, to begin with
+    blue = [(end[..., 2] - end[..., 0] > 60) for end in ends]
+    assert blue[0].sum() > 500 and (np.abs(ends[0] - ends[1]) > 60).any(axis=2).mean() > 0.01
