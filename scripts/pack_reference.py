@@ -29,8 +29,8 @@ from bedchain.stage import complete, write_csv
 from bedchain.storage import write_arrays
 from bedchain.trajectory import open_trajectory, read_manifest
 
-# half a millimetre: in the short bed 1.14 bytes a particle and frame (1 mm: 0.92, 0.25 mm: 1.38). Velocities are
-# differences over 50 ms: these differ by 59 mm/s from those of the moment, the rounding adds 4 (1 mm: 8, 0.25 mm: 2)
+# half a millimetre: in the short bed 1.15 bytes a particle and frame (1 mm: 0.92, 0.25 mm: 1.38). Velocities
+# are differences over 50 ms, 59 mm/s off those of the moment; rounding adds 4 mm/s (1 mm: 8, 0.25 mm: 2)
 LEVEL_M = 5e-4
 # before the learning: chains that know where a particle came from start from it
 HISTORY_S = 0.25
