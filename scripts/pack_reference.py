@@ -17,14 +17,15 @@ import numpy as np
 import pandas as pd
 
 from bedchain import archive
-from bedchain.case import SCHEMA_FILE, Case, load_case, load_schema
+from bedchain.case import SCHEMA_FILE, Case, Schema, load_case, load_schema, schema_keys
 from bedchain.errors import UserError, report_user_errors
 from bedchain.frames import window
 from bedchain.gas_field import read_gas_field
 from bedchain.packing import levels_of, write_levels
+from bedchain.parameters import solver_parameters
 from bedchain.provenance import debian_packages, git_state, machine, python_packages
 from bedchain.repeats import kick_seed, repeat_folder
-from bedchain.segments import whole_folder
+from bedchain.segments import read_parameters, whole_folder
 from bedchain.stage import complete, write_csv
 from bedchain.storage import write_arrays
 from bedchain.trajectory import open_trajectory, read_manifest
@@ -61,6 +62,7 @@ def pack_reference(case_file: Path, results: Path, target: Path, level_m: float 
         raise UserError(f"{target} is there: an archive is made once; delete it to make another")
     start_s, end_s = case["learning"]["start_s"], case["comparison"]["end_s"]
     manifest = finished_manifest(results, case)
+    check_parameters(results, case, schema)
     store, described = open_trajectory(results / "trajectory.npy", results / "trajectory.json")
     history_s = min(HISTORY_S, start_s)
     frames = window(np.array(described["times_s"]), start_s - history_s, end_s)
@@ -122,6 +124,26 @@ def finished_manifest(results: Path, case: Case) -> dict[str, Any]:
         if not file.exists():
             raise UserError(f"{file} is missing: run snakemake with --config reference=simulate first")
     return manifest
+
+
+def check_parameters(results: Path, case: Case, schema: Schema) -> None:
+    """Refuse results of a case that was edited since it was simulated.
+
+    Raises
+    ------
+    UserError
+        Names the keys whose values are others than those that the solvers got.
+    """
+    used = read_parameters(results / "parameters.lig")
+    of_case = [part for part in solver_parameters(case, schema) if part.name in used]
+    edited = [
+        f"{part.source} is {part.value} and was {used[part.name]}"
+        for part in of_case
+        if part.source in schema_keys(schema) or part.name.startswith("gas_cells")
+        if used[part.name] != part.value
+    ]
+    if edited:
+        raise UserError(f"{results} is of another case: {'; '.join(edited)}; simulate it again")
 
 
 def repeat_curves(results: Path, numbers: range) -> pd.DataFrame:
