@@ -21,24 +21,30 @@ LOGS = f"logs/{NAME}"
 BENCHMARKS = f"benchmarks/{NAME}"
 MODELS = CASE["chain"]["models"]
 REPEATS = range(1, CASE["comparison"]["repeats"] + 1)
+OPTIONS = {model: CASE["chain"].get(model, {}) for model in MODELS}
 FORMS = {form: f".{form}" for form in ["png", "pdf", "csv"]}
 # the bed that all is made of, simulated or out of its archive
 RUN = {"dem": f"{RESULTS}/dem.json", "bed_series": f"{RESULTS}/bed_series.csv"}
 TRAJECTORY = {"trajectory": f"{RESULTS}/trajectory.npy", "metadata": f"{RESULTS}/trajectory.json"}
+CHAIN_FILES = {"best": "scores_best"}
+GAS = CASE["gas"]["model"] != "none"  # without it nothing of OpenFOAM is built or run
+DRUM = "liggghts_inputs/drum"
+AUDITED = ["bed", "particles", "contact", "gas", "drum"]
 MODEL_FIGURES = {"static": "fig3_static", "dynamic": "fig4_dynamic"}
 PLOTS = [
     "fig1_cells",
     "fig2_cost",
-    *map(MODEL_FIGURES.get, MODELS),
+    *(MODEL_FIGURES[model] for model in MODELS if model in MODEL_FIGURES),
     "fig5a_radial",
     "fig5b_axial",
-    "snapshot",
+    *(["snapshot"] if GAS else []),
     *(["fig_difference"] if {*MODEL_FIGURES} <= {*MODELS} else []),
     "fig_chapman_kolmogorov",
     "fig_timescales",
     "fig_stationarity",
     *(["fig_discussion"] if {*MODEL_FIGURES} & {*MODELS} else []),
 ]
+SCORE_PLOTS = ["fig_pareto", "fig5_best", "fig_autocorrelation", "fig_distribution_best"]
 
 
 rule all:
@@ -54,6 +60,7 @@ rule all:
                 "stationarity.csv",
                 "timing.csv",
                 "table1.csv",
+                "audit.csv",
                 "provenance.json",
                 *(["agreement.csv"] if source_files(f"cases/{NAME}", "claims.csv") else []),
             ],
@@ -84,7 +91,7 @@ rule verify:
 rule verify_solver:
     input:
         modules("case", "dumps", "errors", "figures", "gas_field", "parameters", "segments", "solver_process"),
-        modules("stage"),
+        modules("slab", "stage"),
         source_files("scripts/bedchain/verification", "*.py"),
         schema="cases/case.schema.yaml",
         solver=rules.build_solver.output.solver,
@@ -105,6 +112,41 @@ rule verify_solver:
         "python scripts/verify_solver.py --solver {input.solver} --folder {params.folder} 2>&1 | tee {log} >&2"
 
 
+# bedFoam beside other codes on the same beds: snakemake --cores 2 peers --config peers='{repeats: 5, beds: paper}'
+rule peers:
+    input:
+        "results/peers/peers.csv",
+
+
+# Alone on the machine, since it measures times. Its finished runs are kept in results/peers/<bed>/.
+rule compare_peers:
+    input:
+        modules("case", "dumps", "errors", "figures", "gas_case", "parameters", "provenance", "segments"),
+        modules("solver_process", "stage"),
+        source_files("scripts/bedchain/peers", "*.py"),
+        source_files("peers", "*"),
+        "scripts/bedchain/verification/particle_files.py",
+        solver=rules.build_solver.output.solver,
+        decks=source_files("liggghts_inputs", "in.*", "include/*.in"),
+        gas=source_files("openfoam_case", "0.orig/*", "constant/*", "system/*"),
+    output:
+        table="results/peers/peers.csv",
+        ratios="results/peers/ratios.csv",
+        text="results/peers/peers.md",
+        figure=multiext("results/peers/figures/peers", ".png", ".pdf"),
+    log:
+        "logs/compare_peers.log",
+    conda:
+        "envs/python.yaml"
+    threads: workflow.cores or 1
+    params:
+        folder=subpath(output.table, parent=True),
+        options=" ".join(f"--{key} {value}" for key, value in config.get("peers", {}).items()),
+    shell:
+        "python scripts/compare_peers.py --solver {input.solver} --folder {params.folder} {params.options}"
+        " 2>&1 | tee {log} >&2"
+
+
 # The case file's own time does not count: only a key that the solvers need makes the particles run again.
 rule write_parameters:
     input:
@@ -123,15 +165,32 @@ rule write_parameters:
         "python scripts/write_parameters.py {input.case} {params.folder} 2>&1 | tee {log} >&2"
 
 
+# First of all that can run: what it warns of is read before the particles have taken hours.
+rule audit_scene:
+    input:
+        modules("audit", "case", "scene_numbers", "stage"),
+    output:
+        audit=f"{RESULTS}/audit.csv",
+    log:
+        f"{LOGS}/audit_scene.log",
+    priority: 1
+    conda:
+        "envs/python.yaml"
+    params:
+        case={section: CASE[section] for section in AUDITED if section in CASE},
+    script:
+        "scripts/audit_scene.py"
+
+
 # Hours for a large bed, so no edit of a script reruns it. Its state, dem/, is no declared output:
 # snakemake deletes the outputs of a job that failed, and the segments must outlive that.
 rule run_dem:
     input:
         rules.write_parameters.output,
-        solver=rules.build_solver.output.solver,
-        decks=["liggghts_inputs/in.settle", "liggghts_inputs/in.fluidize"],
+        solver=rules.build_solver.output.solver if GAS else [],
+        decks=["liggghts_inputs/in.settle", "liggghts_inputs/in.fluidize"] if GAS else source_files(DRUM, "*"),
         blocks=source_files("liggghts_inputs/include", "*.in"),
-        gas=source_files("openfoam_case", "0.orig/*", "constant/*", "system/*"),
+        gas=source_files("openfoam_case", "0.orig/*", "constant/*", "system/*") if GAS else [],
     output:
         **RUN,
     log:
@@ -274,6 +333,7 @@ rule build_transitions:
         "envs/python.yaml"
     params:
         **pick(CASE, "learning", "chain.lag_s", "chain.estimator"),
+        options=lambda wildcards: OPTIONS[wildcards.model],
     script:
         "scripts/build_transitions.py"
 
@@ -296,6 +356,7 @@ rule run_chain:
     params:
         **pick(CASE, "comparison.start_s", "comparison.end_s", "mixing", "chain.estimator", "chain.seed"),
         **pick(CASE, "figures.batch_height_m", "figures.moments_s"),
+        options=lambda wildcards: OPTIONS[wildcards.model],
         learning=CASE["learning"],
     script:
         "scripts/run_chain.py"
@@ -395,7 +456,15 @@ rule plot_discussion:
 rule diagnose_chains:
     input:
         modules(
-            "blocks", "cell_store", "counting", "diagnosis", "estimators", "frames", "grid", "markov_chain"
+            "blocks",
+            "cell_store",
+            "counting",
+            "diagnosis",
+            "diagnostics",
+            "estimators",
+            "frames",
+            "grid",
+            "markov_chain",
         ),
         modules("markov_check", "mixing", "models", "passage", "propagation", "stage"),
         **TRAJECTORY,
@@ -411,10 +480,39 @@ rule diagnose_chains:
         "envs/python.yaml"
     params:
         **pick(CASE, "mixing", "chain.models", "chain.estimator", "chain.seed"),
+        options=OPTIONS,
         learning=CASE["learning"],
         comparison=pick(CASE, "comparison.start_s", "comparison.end_s"),
     script:
         "scripts/diagnose_chains.py"
+
+
+# Against measured profiles, where a case has them: snakemake --cores 2 --config case=mueller validate
+rule validate:
+    input:
+        f"{RESULTS}/validation.csv",
+
+
+rule validate_bed:
+    input:
+        modules("figures", "frames", "stage", "trajectory", "validation"),
+        **TRAJECTORY,
+        points=f"cases/{NAME}/measured.csv",
+    output:
+        multiext(f"{FIGURES}/fig_validation", **FORMS),
+        table=f"{RESULTS}/validation.csv",
+        metrics=f"{RESULTS}/validation_metrics.csv",
+    log:
+        f"{LOGS}/validate_bed.log",
+    conda:
+        "envs/python.yaml"
+    params:
+        **pick(CASE, "bed.width_m", "bed.thickness_m", "particles.diameter_m"),
+        **pick(CASE, "figures.resolution_dpi"),
+        start_s=CASE["learning"]["start_s"],
+        end_s=CASE["comparison"]["end_s"],
+    script:
+        "scripts/validate_bed.py"
 
 
 # Alone on the machine, since it measures times.
@@ -437,6 +535,7 @@ rule time_models:
     threads: workflow.cores or 1
     params:
         **pick(CASE, "mixing", "chain.models", "chain.estimator", "chain.seed"),
+        options=OPTIONS,
         learning=CASE["learning"],
         comparison=pick(CASE, "comparison.start_s", "comparison.end_s"),
     script:
@@ -503,9 +602,9 @@ rule plot_distribution:
     input:
         modules("cell_store", "diagnostics", "distribution", "figures", "grid", "stage"),
         cells=rules.assign_cells.output.cells,
-        chain=rules.run_chain.output.chain,
+        chain=lambda wildcards: f"{RESULTS}/{CHAIN_FILES.get(wildcards.model, f'chain_{wildcards.model}')}.npz",
     output:
-        multiext(f"{FIGURES}/{{figure,fig[34]}}_{{model,static|dynamic}}", **FORMS),
+        multiext(f"{FIGURES}/{{figure,fig[34]|fig_distribution}}_{{model,static|dynamic|best}}", **FORMS),
     log:
         f"{LOGS}/plot_distribution_{{figure}}_{{model}}.log",
     conda:
@@ -647,6 +746,94 @@ rule write_agreement:
         **pick(CASE, "chain.models"),
     script:
         "scripts/write_agreement.py"
+
+
+# Every model chosen by validation inside the learning window and tested once: snakemake --cores 2 scores
+rule scores:
+    input:
+        expand(f"{RESULTS}/{{name}}.csv", name=["scores", "selection"]),
+        expand(f"{FIGURES}/{{name}}{{form}}", name=SCORE_PLOTS, form=FORMS.values()),
+
+
+rule score_models:
+    input:
+        modules("candidates", "comparison", "errors", "frames", "grid", "held_out", "kept", "lagrangian"),
+        modules("model_styles", "models", "regrid", "runs", "score_rows", "selection", "stage", "starts"),
+        modules("storage", "trial"),
+        **TRAJECTORY,
+        # an archive keeps the repeats' curves, not their positions
+        repeats=expand(f"{RESULTS}/repeats/{{repeat}}/trajectory.npy", repeat=[] if REFERENCE else REPEATS),
+    output:
+        scores=f"{RESULTS}/scores.csv",
+        selection=f"{RESULTS}/selection.csv",
+        mixing=f"{RESULTS}/scores_mixing.csv",
+        lagrangian=f"{RESULTS}/scores_lagrangian.csv",
+        best=f"{RESULTS}/scores_best.npz",
+    log:
+        f"{LOGS}/score_models.log",
+    benchmark:
+        f"{BENCHMARKS}/score_models.tsv"
+    conda:
+        "envs/python.yaml"
+    params:
+        **pick(CASE, "cells", "chain.lag_s", "chain.estimator", "chain.seed", "mixing"),
+        **pick(CASE, "particles.diameter_m", "figures.batch_height_m", "figures.moments_s"),
+        learning=CASE["learning"],
+        comparison=pick(CASE, "comparison.start_s", "comparison.end_s"),
+    script:
+        "scripts/score_models.py"
+
+
+rule plot_pareto:
+    input:
+        modules("errors", "figures", "model_styles", "stage"),
+        scores=rules.score_models.output.scores,
+        selection=rules.score_models.output.selection,
+    output:
+        multiext(f"{FIGURES}/fig_pareto", **FORMS),
+    log:
+        f"{LOGS}/plot_pareto.log",
+    conda:
+        "envs/python.yaml"
+    params:
+        **pick(CASE, "figures.resolution_dpi"),
+        baseline_lag_s=CASE["chain"]["lag_s"],
+        baseline_cell_m=CASE["bed"]["width_m"] / CASE["cells"]["columns"],
+    script:
+        "scripts/plot_pareto.py"
+
+
+rule plot_best_mixing:
+    input:
+        modules("errors", "figures", "model_styles", "stage"),
+        mixing=rules.score_models.output.mixing,
+        selection=rules.score_models.output.selection,
+    output:
+        multiext(f"{FIGURES}/fig5_best", **FORMS),
+    log:
+        f"{LOGS}/plot_best_mixing.log",
+    conda:
+        "envs/python.yaml"
+    params:
+        **pick(CASE, "figures.resolution_dpi", "figures.dem_colour", "figures.static_colour"),
+    script:
+        "scripts/plot_best_mixing.py"
+
+
+rule plot_autocorrelation:
+    input:
+        modules("errors", "figures", "model_styles", "stage"),
+        lagrangian=rules.score_models.output.lagrangian,
+    output:
+        multiext(f"{FIGURES}/fig_autocorrelation", **FORMS),
+    log:
+        f"{LOGS}/plot_autocorrelation.log",
+    conda:
+        "envs/python.yaml"
+    params:
+        **pick(CASE, "figures.resolution_dpi", "figures.dem_colour"),
+    script:
+        "scripts/plot_autocorrelation.py"
 
 
 rule write_provenance:

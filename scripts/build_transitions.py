@@ -2,6 +2,7 @@
 """A chain learned from the learning window: results/<case>/transitions_<model>.npz."""
 
 from pathlib import Path
+from typing import Any
 
 from bedchain import models
 from bedchain.cell_store import open_cells, window_frames
@@ -12,6 +13,7 @@ from bedchain.stage import LOG, stage
 def build_transitions(
     trajectory: Path, metadata: Path, cells: Path, transitions: Path,
     model: str, estimator: str, lag_s: float, start_s: float, end_s: float,
+    options: dict[str, Any] | None = None,
 ) -> None:  # fmt: skip
     """Count the moves between cells in a window and make a chain of them.
 
@@ -29,6 +31,8 @@ def build_transitions(
         Time of one step of the chain [s].
     start_s, end_s : float
         The learning window [s].
+    options : dict, optional
+        Settings of this model only.
 
     Raises
     ------
@@ -37,7 +41,8 @@ def build_transitions(
     """
     store = open_cells(cells)
     frames = window_frames(trajectory, metadata, store, start_s, end_s)
-    chain = models.learn(model, frames, store.grid, lag_frames(lag_s, frames.interval_s), estimator)
+    lag = lag_frames(lag_s, frames.interval_s)
+    chain = models.learn(model, frames, store.grid, lag, estimator, **(options or {}))
     models.save(chain, transitions)
     for name, value in chain.report.items():
         LOG.info("%s chain, %s: %.6g", model, name, value)
@@ -55,4 +60,5 @@ if "snakemake" in globals():
             snakemake.params.lag_s,
             snakemake.params.start_s,
             snakemake.params.end_s,
+            snakemake.params.options,
         )

@@ -3,6 +3,7 @@
 
 from collections.abc import Iterator, Sequence
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 
@@ -10,12 +11,22 @@ from bedchain import models
 from bedchain.blocks import block_length
 from bedchain.cell_store import frames_up_to, open_cells, window_frames
 from bedchain.counting import count_moves
-from bedchain.diagnosis import Row, arrival_row, dispersion_rows, estimator_rows, lacey_rows, table, time_rows
+from bedchain.diagnosis import (
+    Row,
+    arrival_row,
+    dispersion_rows,
+    estimator_rows,
+    lacey_rows,
+    row,
+    table,
+    time_rows,
+)
+from bedchain.diagnostics import total_variation
 from bedchain.estimators import visited_density
-from bedchain.frames import Frames
+from bedchain.frames import Frames, lag_frames
 from bedchain.grid import Grid
 from bedchain.markov_chain import MarkovChain
-from bedchain.markov_check import check_model, counted_rows, doubled_lags, markovian
+from bedchain.markov_check import check_model, counted_rows, doubled_lags
 from bedchain.mixing import marked_histogram, sides
 from bedchain.passage import top_row
 from bedchain.propagation import count_sides
@@ -29,6 +40,8 @@ FOLLOWED_SHARE = 0.5
 LACEY_MOMENTS = 40
 # every other one of the lags is enough for dispersion coefficients
 DISPERSION_STRIDE = 2
+# their long-run densities come with the comparison of the estimators
+PAPER_MODELS = ("static", "dynamic")
 REPORTED = ("mixing_time", "long_run_total_variation", "chapman_kolmogorov_rms")
 
 
@@ -36,8 +49,11 @@ def diagnose_chains(
     trajectory: Path, metadata: Path, cells: Path, transitions: dict[str, Path], diagnostics: Path,
     learning: dict[str, float], comparison: dict[str, float],
     split_x_m: float, split_z_m: float, estimator: str, seed: int,
+    options: dict[str, dict[str, Any]] | None = None,
 ) -> None:  # fmt: skip
     """Test the chains on their own learning window, and read from them what they imply for the bed.
+
+    Models without a transition matrix have no timescales: of them only what particles do is given.
 
     Parameters
     ----------
@@ -55,11 +71,16 @@ def diagnose_chains(
         How counts become probabilities.
     seed : int
         Of the blocks and of the particles' paths.
+    options : dict of str to dict, optional
+        Settings of each model only.
     """
     store = open_cells(cells)
-    chains = {name: markovian(models.load(path)) for name, path in transitions.items()}
+    chains = {name: models.load(path) for name, path in transitions.items()}
+    with_matrix = {name: chain for name, chain in chains.items() if isinstance(chain, MarkovChain)}
+    if absent := [name for name in chains if name not in with_matrix]:
+        LOG.info("no transition matrix, so no timescales and no consistency: %s", ", ".join(absent))
     frames = window_frames(trajectory, metadata, store, learning["start_s"], learning["end_s"])
-    lag = next(iter(chains.values())).lag
+    lag = lag_frames(next(iter(chains.values())).lag_s, frames.interval_s)
     lags = doubled_lags(lag, len(frames.times_s))
     longest = max(lags[-1], int(FOLLOWED_SHARE * len(frames.times_s)) // lag * lag)
     looks = count_sides(frames, split_x_m, split_z_m, range(lag, longest + 1, lag))
@@ -70,22 +91,29 @@ def diagnose_chains(
 
     rows = estimator_rows(frames, store.grid, lag, list(chains))
     rows += counted_rows(looks, frames, block, next(random))
-    for name in chains:
-        rows += check_model(name, frames, store.grid, looks, lags, estimator, block, next(random))
+    for name in with_matrix:
+        own = (options or {}).get(name, {})
+        rows += check_model(name, frames, store.grid, looks, lags, estimator, block, next(random), own)
     rows += path_rows("dem", frames, store.grid, top, lags)
     known = in_cells(frames.times_s, frames.cells, store.grid)
     rows += dispersion_rows("dem_cells", known, store.grid, lags[::DISPERSION_STRIDE])
     before = frames_up_to(trajectory, metadata, store, learning["start_s"], lag)
     for name, chain in chains.items():
-        start = np.bincount(chain.states(before), minlength=chain.matrix.shape[0]).astype(float)
-        rows += time_rows(chain, start, 1 / frames.cells.shape[1], top)
+        if name not in PAPER_MODELS:
+            distance = total_variation(chain.long_run_density(before), density)
+            where = {"lag_s": chain.lag_s, "part": estimator}
+            rows.append(row("long_run_total_variation", name, distance, **where))
+        if name in with_matrix:
+            matrix_chain = with_matrix[name]
+            held = np.bincount(matrix_chain.states(before), minlength=matrix_chain.matrix.shape[0])
+            rows += time_rows(matrix_chain, held.astype(float), 1 / frames.cells.shape[1], top)
         times = frames.times_s[::lag]
         paths = np.array([now.copy() for now in chain.paths(before, len(times) - 1, next(random))])
         steps = [one // lag for one in lags]
         rows += path_rows(name, in_cells(times, paths, store.grid), store.grid, top, steps)
     start = frames_up_to(trajectory, metadata, store, comparison["start_s"], lag)
     window = window_frames(trajectory, metadata, store, comparison["start_s"], comparison["end_s"])
-    rows += index_rows(chains, start, window, (split_x_m, split_z_m), random)
+    rows += index_rows(chains, start, window, (split_x_m, split_z_m), lag, random)
     write_csv(table(rows), diagnostics)
     for one in rows:
         if one["quantity"] in REPORTED and one["lag_s"] == lag * frames.interval_s:
@@ -106,20 +134,22 @@ def in_cells(times_s: np.ndarray, cells: np.ndarray, grid: Grid) -> Frames:
 
 
 def index_rows(
-    chains: dict[str, MarkovChain], start: Frames, window: Frames, splits: tuple[float, float],
+    chains: dict[str, models.Chain], start: Frames, window: Frames, splits: tuple[float, float], lag: int,
     random: Iterator[np.random.Generator],
 ) -> list[Row]:  # fmt: skip
     """Lacey's index over the comparison window, by the DEM and by as many particles of each chain.
 
     Parameters
     ----------
-    chains : dict of str to MarkovChain
+    chains : dict of str to Chain
     start : Frames
         Up to the start of the comparison.
     window : Frames
         The comparison window.
     splits : (float, float)
         Lines between left and right, low and up [m].
+    lag : int
+        Frames in a step of the chains.
     random : iterator of numpy Generator
         One for each chain.
 
@@ -129,10 +159,10 @@ def index_rows(
     """
     marked = sides(np.asarray(start.x_m[-1]), np.asarray(start.z_m[-1]), *splits)
     first = next(iter(chains.values()))
-    n_steps = (len(window.times_s) - 1) // first.lag
+    n_steps = (len(window.times_s) - 1) // lag
     steps = np.unique(np.linspace(0, n_steps, min(n_steps, LACEY_MOMENTS) + 1).astype(int))
     times = steps * first.lag_s
-    seen = [marked_histogram(window.cells[step * first.lag], marked, first.grid.n_cells) for step in steps]
+    seen = [marked_histogram(window.cells[step * lag], marked, first.grid.n_cells) for step in steps]
     rows = lacey_rows("dem", times, np.array(seen))
     for name, chain in chains.items():
         rows += lacey_rows(name, times, chain.densities(start, marked, list(steps), next(random)))
@@ -153,4 +183,5 @@ if "snakemake" in globals():
             snakemake.params.split_z_m,
             snakemake.params.estimator,
             snakemake.params.seed,
+            snakemake.params.options,
         )

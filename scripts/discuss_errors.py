@@ -20,6 +20,7 @@ from bedchain.trajectory import open_trajectory
 AXES = ("x", "z")
 # the steps that a chain may have to know of what came before
 HISTORY_LAGS = 4
+ROUND_OFF = 1e-6
 Row = dict[str, Any]
 
 
@@ -53,8 +54,8 @@ def discuss_errors(
     names : list of str
         Models.
     cell_sizes_m, lags_s : list of float
-        Sizes of cells [m], rounded so that they divide the bed, and lags [s]; a lag that does not divide both
-        windows is left out.
+        Sizes of cells [m], rounded so that they divide the bed, and lags [s]; a lag that is no
+        multiple of the frame interval, or does not divide both windows, is left out.
     """
     store, described = open_trajectory(trajectory, metadata)
     times_s, interval_s = np.array(described["times_s"]), described["frame_interval_s"]
@@ -62,7 +63,7 @@ def discuss_errors(
     size = described["width_m"], described["height_m"]
     own_grid, own_lag = Grid(*size, columns, rows), lag_frames(lag_s, interval_s)
     grids = [Grid(*size, *(max(1, round(length / cell)) for length in size)) for cell in cell_sizes_m]
-    lags = [lag_frames(lag, interval_s) for lag in lags_s]
+    lags = [round(lag / interval_s) for lag in lags_s if is_whole(lag / interval_s)]
     lengths = [part.stop - part.start - 1 for part in (learned, compared)]
     lags = [lag for lag in lags if not any(length % lag for length in lengths)]
     curves = realisations(pd.read_csv(mixing), lengths[1] + 1)
@@ -81,6 +82,11 @@ def discuss_errors(
                     found += error_rows(name, grid, chain.lag_s, remaining, curves.mean(axis=0)[::lag])
         LOG.info("%d x %d cells of %.3g m", grid.columns, grid.rows, cell_size(grid))
     write_csv(pd.DataFrame(found), discussion)
+
+
+def is_whole(number: float) -> bool:
+    """Whether a ratio is a whole number up to round-off, at least 1."""
+    return round(number) >= 1 and abs(number - round(number)) < ROUND_OFF
 
 
 def in_cells(store: np.ndarray, times_s: np.ndarray, grid: Grid, part: slice) -> Frames:

@@ -36,7 +36,7 @@ def plot_chapman_kolmogorov(
     png, pdf, csv : Path
         Figure in two forms, and the numbers behind it.
     colours : dict of str to str
-        Colours of ``dem`` and of each model.
+        Colours of ``dem`` and of each model; those without curves in the table (no matrix) are left out.
     resolution_dpi : int
         Of the png [dots per inch].
 
@@ -46,8 +46,8 @@ def plot_chapman_kolmogorov(
         The table has no such curves.
     """
     table = pd.read_csv(diagnostics).query("quantity in @CURVES")
-    models = [source for source in colours if source != "dem"]
-    if set(table["source"]) != {"dem", *models}:
+    models = [source for source in colours if source != "dem" and source in set(table["source"])]
+    if not models or set(table["source"]) != {"dem", *models}:
         raise UserError(f"{diagnostics} lacks curves of {', '.join(colours)}; delete it and run again")
     lags = sorted(table["lag_s"].dropna().unique())[::LAG_STRIDE][: len(STYLES)]
     with figure_style():

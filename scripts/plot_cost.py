@@ -13,7 +13,7 @@ from bedchain.stage import stage, write_csv
 
 KINDS = {
     "simulate": ("{model} and gas: simulate", "s", True),
-    "learn": ("{model} chain: learn the matrix", "s", False),
+    "learn": ("{model} chain: learn", "s", False),
     "exact": ("advance, exact expectation", "o", True),
     "monte_carlo": ("advance, Monte Carlo", "D", False),
 }
@@ -53,7 +53,8 @@ def cost_table(timing: pd.DataFrame) -> pd.DataFrame:
     Parameters
     ----------
     timing : DataFrame
-        Stages ``dem`` and ``<model>_count``, ``<model>_matrix``, ``<model>_exact``, ``<model>_monte_carlo``.
+        Stages ``dem`` and ``<model>_count`` with ``<model>_matrix``, or ``<model>_learn``; ``<model>_exact``,
+        ``<model>_monte_carlo``.
 
     Returns
     -------
@@ -70,7 +71,9 @@ def cost_table(timing: pd.DataFrame) -> pd.DataFrame:
     try:
         rows = [("dem", "simulate", wall["dem"])]
         for model in models:
-            rows.append((model, "learn", wall[f"{model}_count"] + wall[f"{model}_matrix"]))
+            whole = f"{model}_learn" in wall
+            parts = ("learn",) if whole else ("count", "matrix")
+            rows.append((model, "learn", sum(wall[f"{model}_{part}"] for part in parts)))
             rows += [(model, kind, wall[f"{model}_{kind}"]) for kind in ("exact", "monte_carlo")]
     except KeyError as error:
         raise UserError(f"timing.csv has no stage {error}; delete it and run time_models again") from error

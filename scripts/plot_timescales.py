@@ -36,7 +36,7 @@ def plot_timescales(
     png, pdf, csv : Path
         Figure in two forms, and the numbers behind it.
     colours : dict of str to str
-        Colour of each model.
+        Colour of each model; those without timescales in the table (no matrix) are left out.
     resolution_dpi : int
         Of the png [dots per inch].
 
@@ -46,8 +46,9 @@ def plot_timescales(
         The table has no timescales of a model.
     """
     table = pd.read_csv(diagnostics).query("quantity == 'implied_timescale'")
-    if set(table["source"]) != set(colours):
+    if table.empty or not set(table["source"]) <= set(colours):
         raise UserError(f"{diagnostics} lacks timescales of {', '.join(colours)}; delete it and run again")
+    colours = {model: colour for model, colour in colours.items() if model in set(table["source"])}
     table = processes(table)
     lags = table["lag_s"].unique()
     shown = table[table["process"] <= PROCESSES]

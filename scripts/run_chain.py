@@ -3,6 +3,7 @@
 
 import json
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 
@@ -27,7 +28,7 @@ def run_chain(
     trajectory: Path, metadata: Path, cells: Path, transitions: Path, chain: Path,
     learning: dict[str, float], estimator: str,
     start_s: float, end_s: float, split_x_m: float, split_z_m: float,
-    batch_height_m: float, moments_s: list[float], seed: int,
+    batch_height_m: float, moments_s: list[float], seed: int, options: dict[str, Any] | None = None,
 ) -> None:  # fmt: skip
     """Advance the marked groups of Fig. 5 and the batch of Figs. 3 and 4, by expectation and by dice.
 
@@ -53,6 +54,8 @@ def run_chain(
         Times after the start at which the batch is wanted [s].
     seed : int
         Of the Monte Carlo runs.
+    options : dict, optional
+        Settings of this model only, as it was learned with.
 
     Raises
     ------
@@ -77,7 +80,7 @@ def run_chain(
             "remaining": model.mixing(start, *splits, steps),
             "remaining_monte_carlo": model.mixing(start, *splits, steps, for_mixing),
             "remaining_replicates": block_chains(
-                models.relearner(model.name, learned_from, store.grid, lag, estimator),
+                models.relearner(model.name, learned_from, store.grid, lag, estimator, **(options or {})),
                 lambda again: again.mixing(start, *splits, steps),
                 len(learned_from.times_s) - lag,
                 block_length(learned_from, split_x_m, lag),
@@ -141,4 +144,5 @@ if "snakemake" in globals():
             snakemake.params.batch_height_m,
             snakemake.params.moments_s,
             snakemake.params.seed,
+            snakemake.params.options,
         )

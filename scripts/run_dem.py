@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Simulate a case's bed in restartable segments: settle without gas, then ramp the gas and run.
+"""Simulate a case in restartable segments: settle without gas, then ramp the gas, or turn the drum, and run.
 
 usage: python scripts/run_dem.py results/short --end 5 --segment 0.25 --ranks 2
        python scripts/run_dem.py results/short --end 5 --segment 0.25 --ranks 2 --start 3 --repeat 1
@@ -19,6 +19,7 @@ from pathlib import Path
 
 import pandas as pd
 
+from bedchain import drum_run
 from bedchain.disk import require_disk
 from bedchain.errors import UserError, report_user_errors
 from bedchain.gas_case import GAS_CASE, GAS_PARTS, prepare_gas
@@ -31,6 +32,7 @@ from bedchain.segments import (
     check_frames,
     exclusive,
     finished_segments,
+    frame_columns,
     input_stamp,
     manifest,
     read_parameters,
@@ -44,11 +46,12 @@ SOLVER = Path("results/bin/bedFoam")
 DECKS = Path("liggghts_inputs")
 ROW_EVERY = 10  # gas steps between two rows of bed_series.csv
 BYTES_PER_PARTICLE = 500  # of LIGGGHTS's restart, with its contact history (480 measured)
-COLUMNS_WRITTEN = 5  # of a frame: id, x, z, vx, vz
 
 
 def input_files(folder: Path) -> list[Path]:
     """Every file that the run depends on, in a fixed order."""
+    if drum_run.turns(folder):
+        return drum_run.input_files(folder, DECKS)
     given = [folder / "parameters.lig", folder / "caseParameters", SOLVER]
     decks = [DECKS / "in.settle", DECKS / "in.fluidize", *sorted((DECKS / "include").glob("*.in"))]
     gas = sorted(file for part in GAS_PARTS for file in (GAS_CASE / part).rglob("*") if file.is_file())
@@ -65,8 +68,9 @@ def settle(run: Run) -> None:
     if (run.state / run.origin).exists():
         return
     print("run_dem: settling the particles without gas", flush=True)
+    name = drum_run.FILL if drum_run.turns(run.case) else "in.settle"
     with whole_folder(run.state / run.origin) as part:
-        deck = ["liggghts", "-in", f"{DECKS}/in.settle", "-log", "none", "-var", "decks", str(DECKS)]
+        deck = ["liggghts", "-in", f"{DECKS}/{name}", "-log", "none", "-var", "decks", str(DECKS)]
         variables = ["-var", "parameters", str(run.case / "parameters.lig"), "-var", "output", str(part)]
         run_logged(on_ranks(deck + variables, run.ranks), part / "liggghts.log")
 
@@ -91,6 +95,8 @@ def run_segment(run: Run, index: int, steps: tuple[int, int]) -> Segment:
     step_s = float(parameters["dem_step"])
     name = f"segment_{index:04d}"
     previous = run.state / (f"segment_{index - 1:04d}" if index > 1 else run.origin)
+    if drum_run.turns(run.case):
+        return drum_run.run_segment(run, index, steps, previous, DECKS)
     with whole_folder(run.state / name) as part:
         settings: dict[str, object] = {
             "ranks": run.ranks,
@@ -188,7 +194,7 @@ def advance(run: Run, segment_steps: int) -> None:
     segments = finished_segments(run.state)
     while (start := segments[-1].end_step if segments else run.start_step) < run.end_step:
         stop = min(start + segment_steps, run.end_step)
-        frame_bytes = 8 * COLUMNS_WRITTEN * (stop - start) // int(parameters["frame_steps"])
+        frame_bytes = 8 * len(frame_columns(parameters)) * (stop - start) // int(parameters["frame_steps"])
         require_disk(run.results, int(parameters["number"]) * (BYTES_PER_PARTICLE + frame_bytes))
         segments.append(run_segment(run, len(segments) + 1, (start, stop)))
     write_results(run, [segment for segment in segments if segment.start_step < run.end_step])
@@ -197,9 +203,9 @@ def advance(run: Run, segment_steps: int) -> None:
 def write_results(run: Run, segments: list[Segment]) -> None:
     """Write ``bed_series.csv`` and ``dem.json`` of the finished segments, moved into place when complete."""
     found = manifest(run, segments)
-    series = pd.concat(
-        [pd.read_csv(run.state / segment.folder / "gas" / "bed_series.csv") for segment in segments]
-    )
+    inside = "" if drum_run.turns(run.case) else "gas"
+    files = [run.state / segment.folder / inside / drum_run.SERIES for segment in segments]
+    series = pd.concat(map(pd.read_csv, files))
     part = run.results / "bed_series.csv.part"
     series[series["time_s"] <= run.end_step * float(str(found["dem_step_s"])) * (1 + 1e-9)].to_csv(
         part, index=False

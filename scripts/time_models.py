@@ -32,7 +32,7 @@ Row = dict[str, Any]
 def time_models(
     dem: Path, trajectory: Path, metadata: Path, cells: Path, transitions: dict[str, Path], timing: Path,
     learn_start_s: float, learn_end_s: float, start_s: float, end_s: float,
-    estimator: str, split_x_m: float, split_z_m: float, seed: int,
+    estimator: str, split_x_m: float, split_z_m: float, seed: int, options: dict[str, Any] | None = None,
 ) -> None:  # fmt: skip
     """Time counting, estimating, exact propagation and Monte Carlo of each chain, beside the DEM.
 
@@ -52,6 +52,8 @@ def time_models(
         Lines between left and right, low and up [m].
     seed : int
         Of the Monte Carlo runs.
+    options : dict of str to dict, optional
+        Settings of each model only.
     """
     store = open_cells(cells)
     rows = [dem_row(read_manifest(dem), start_s, end_s)]
@@ -62,7 +64,9 @@ def time_models(
         lag = lag_frames(chain.lag_s, comparison.interval_s)
         start = in_memory(frames_up_to(trajectory, metadata, store, start_s, lag))
         steps = whole_steps(len(comparison.times_s), lag)
-        rows += learning_rows(model, learning, store.grid, lag, chain.lag_s, estimator)
+        rows += learning_rows(
+            model, learning, store.grid, lag, chain.lag_s, estimator, (options or {}).get(model, {})
+        )
         rows += running_rows(model, chain, start, steps, (split_x_m, split_z_m), seed)
     write_csv(pd.DataFrame(rows), timing)
     for row in rows:
@@ -103,14 +107,13 @@ def dem_row(manifest: dict[str, Any], start_s: float, end_s: float) -> Row:
 
 
 def learning_rows(
-    model: str, learning: Frames, grid: Grid, lag: int, lag_s: float, estimator: str
+    model: str, learning: Frames, grid: Grid, lag: int, lag_s: float, estimator: str, options: dict[str, Any]
 ) -> list[Row]:
-    """Counting and estimating of one chain.
+    """Learning of one chain; of those of the paper counting and estimating apart.
 
     Parameters
     ----------
     model : str
-        ``static`` or ``dynamic``.
     learning : Frames
         The learning window, in memory.
     grid : Grid
@@ -119,6 +122,8 @@ def learning_rows(
     lag_s : float
         The same [s].
     estimator : str
+    options : dict
+        Settings of this model only.
 
     Returns
     -------
@@ -131,6 +136,9 @@ def learning_rows(
         count = lambda: counting.count_moves(cells, n_cells, lag)  # noqa: E731
         counts = count()
         estimate: Callable[[], Any] = lambda: transition_matrix(counts, estimator)  # noqa: E731
+    elif model != "dynamic":
+        learn = lambda: models.learn(model, learning, grid, lag, estimator, **options)  # noqa: E731
+        return [measured(f"{model}_learn", learn, moves, "particle moves")]
     else:
         count = lambda: (counting.count_pairs(cells, n_cells, lag), counting.count_moves(cells, n_cells, lag))  # noqa: E731
         double, single = count()
@@ -208,10 +216,8 @@ def measured(name: str, kernel: Callable[[], Any], work: float, work_unit: str) 
 
 def in_memory(frames: Frames) -> Frames:
     """Frames copied out of their memory maps, so that no disk is timed."""
-    return Frames(
-        np.array(frames.times_s), np.array(frames.x_m), np.array(frames.z_m),
-        np.ascontiguousarray(np.array(frames.cells)),
-    )  # fmt: skip
+    rest = (frames.x_m, frames.z_m, np.ascontiguousarray(frames.cells), frames.vx_m_s, frames.vz_m_s)
+    return Frames(np.array(frames.times_s), *(None if array is None else np.array(array) for array in rest))
 
 
 def _forget_peak() -> None:
@@ -247,4 +253,5 @@ if "snakemake" in globals():
             snakemake.params.split_x_m,
             snakemake.params.split_z_m,
             snakemake.params.seed,
+            snakemake.params.options,
         )

@@ -35,13 +35,16 @@ ALL = {
         "run_chain",
     ),
     *("compare_mixing", "time_models", "plot_cells", "plot_cost", "plot_distribution", "plot_mixing"),
-    *("plot_snapshot", "write_table", "write_provenance"),
+    *("plot_snapshot", "write_table", "write_provenance", "audit_scene"),
     *("diagnose_chains", "plot_difference", "plot_chapman_kolmogorov", "plot_timescales"),
     *("plot_stationarity", "discuss_errors", "plot_discussion", "make_film"),
 }
-PARTICLES = {
+AUDIT = {"audit_scene"}  # reads neither time nor cells
+PARTICLES = AUDIT | {
     *("build_solver", "write_parameters", "run_dem", "parse_dumps", "repeat_dem", "measure_mixing"),
 }
+# of the target `scores` only
+SCORES = {"score_models", "plot_pareto", "plot_best_mixing", "plot_autocorrelation"}
 WHOLE_BED = {"plot_snapshot"}  # needs particles and gas, no cells
 
 
@@ -117,6 +120,16 @@ def test_everything_runs_in_an_empty_folder(finished, tmp_path):
     assert set(planned(tmp_path)) == ALL
 
 
+def test_scores_need_no_chain_of_the_comparison(finished, tmp_path):
+    for name in COPIED:
+        (tmp_path / name).parent.mkdir(parents=True, exist_ok=True)
+        (tmp_path / name).symlink_to(finished / name)
+    jobs = planned(tmp_path, "scores")
+    needed = PARTICLES - {"measure_mixing"} | {"assign_cells", "plot_distribution"}
+    assert set(jobs) - {"scores"} == SCORES | needed
+    assert jobs["plot_distribution"] == 1
+
+
 @pytest.fixture
 def with_archive(finished, tmp_path):
     """An empty folder whose short case has an archive, as far as dry runs look into it."""
@@ -154,6 +167,14 @@ def test_what_the_archive_cannot_serve_stops_before_anything(with_archive):
     done = snakemake(with_archive, "--dry-run", "--config", "reference=archive")
     assert done.returncode != 0 and "short has no archive" in done.stderr
     assert "Traceback" not in done.stderr and not (with_archive / "results").exists()
+
+
+def test_a_scene_without_gas_asks_for_nothing_of_openfoam(finished, tmp_path):
+    for name in set(COPIED) - {"openfoam_case"}:
+        (tmp_path / name).parent.mkdir(parents=True, exist_ok=True)
+        (tmp_path / name).symlink_to(finished / name)
+    jobs = planned(tmp_path, "--config", "case=drum")
+    assert set(jobs) == ALL - {"build_solver", "plot_snapshot", "repeat_dem", "measure_mixing"}
 
 
 def test_a_comment_in_the_case_file_runs_nothing(finished, case):
@@ -200,12 +221,12 @@ def test_a_colour_runs_only_its_figure(finished, case, key, value, jobs):
 )
 def test_physics_runs_the_particles_and_what_follows(finished, case, section, key, value):
     case(section, key, value)
-    assert set(planned(finished)) == ALL - {"build_solver"}
+    assert set(planned(finished)) == ALL - {"build_solver"} - (AUDIT if section == "time" else set())
 
 
 def test_a_later_end_lets_the_particles_go_on_with_the_same_parameters(finished, case):
     case("time", "end_s", "6.0")
-    assert set(planned(finished)) == ALL - {"build_solver", "write_parameters"}
+    assert set(planned(finished)) == ALL - {"build_solver", "write_parameters"} - AUDIT
 
 
 def test_another_repeat_runs_it_alone_and_what_compares(finished, case):
@@ -295,7 +316,7 @@ def test_a_seed_that_is_no_prime_stops_before_anything(finished, results):
 def test_an_unknown_case_is_told_the_known_ones(finished):
     done = snakemake(finished, "--config", "case=shorter")
     assert done.returncode != 0
-    assert "there is no case 'shorter'" in done.stderr and "paper, short" in done.stderr
+    assert "there is no case 'shorter'" in done.stderr and "mueller, paper, short" in done.stderr
 
 
 @pytest.fixture(scope="module")
@@ -317,8 +338,8 @@ def used_names(script: Path, kind: str) -> set[str]:
 
 
 def test_every_script_has_the_name_of_its_rule(rules):
-    no_scripts = {"build_solver", "write_parameters", "run_dem", "repeat_dem"}
-    assert set(rules) == (ALL - no_scripts) | {"write_agreement"}
+    without_own_name = {"build_solver", "write_parameters", "run_dem", "repeat_dem"}
+    assert set(rules) == (ALL | SCORES | {"validate_bed", "write_agreement"}) - without_own_name
     for name, rule in rules.items():
         assert rule.script == f"scripts/{name}.py"
 

@@ -90,7 +90,7 @@ def count_moves(
     DataError
         No step fits, a cell number is outside the grid, or the lag does not divide the window.
     """
-    starts, weights = _starts(cells, lag, 1, sliding, first, last, step_weights)
+    starts, weights = step_starts(cells, lag, 1, sliding, first, last, step_weights)
     occupied, table = np.zeros(n_cells, np.int64), tally.empty_table()
     for (before, after), chunk_weights in chunks(cells, n_cells, starts, weights, (0, lag)):
         table = tally.tally_moves(before, after, chunk_weights, occupied, table)
@@ -122,7 +122,7 @@ def count_pairs(
     DataError
         As `count_moves`.
     """
-    starts, weights = _starts(cells, lag, 2, sliding, first, last, step_weights)
+    starts, weights = step_starts(cells, lag, 2, sliding, first, last, step_weights)
     pairs, table = tally.empty_table(np.int64, 1), tally.empty_table()
     occupied = np.zeros(0, np.int64)
     for (before, now, after), chunk_weights in chunks(cells, n_cells, starts, weights, (0, lag, 2 * lag)):
@@ -214,16 +214,16 @@ def _merge_two(one: Counts, two: Counts) -> Counts:
     return Counts(moves, shares, occupied, one.steps + two.steps, one.lag, listed)
 
 
-def _starts(
+def step_starts(
     cells: NDArray[np.int32],
     lag: int,
-    moves: int,
-    sliding: bool,
-    first: int,
-    last: int | None,
-    step_weights: NDArray[np.int64] | None,
+    moves: int = 1,
+    sliding: bool = True,
+    first: int = 0,
+    last: int | None = None,
+    step_weights: NDArray[np.int64] | None = None,
 ) -> tuple[NDArray[np.int64], NDArray[np.int64]]:
-    """Starting frames of the steps, and how many times each counts."""
+    """Starting frames of the steps of so many moves, and how many times each counts; see `count_moves`."""
     if cells.ndim != 2:
         raise DataError(f"cells of shape {cells.shape}, (frames, particles) expected")
     n_starts = len(cells) - moves * lag

@@ -14,15 +14,17 @@ from bedchain import chains, mixing
 from bedchain.diagnostics import long_run_density
 from bedchain.frames import DataError, Frames
 from bedchain.grid import Grid
+from bedchain.velocity import VelocityClasses
 
 
 @dataclass(frozen=True)
 class MarkovChain:
     """Transition matrix between states, the cell of each state, and how to find a particle's state.
 
-    A state is found from what a particle shows in the last frames before the start: the ``history`` cells,
-    one lag apart, oldest first, read as one number in base ``n_cells`` (its key). Keys that no state has
-    fall back on the state numbered ``fallback + cell``.
+    A state is found from what a particle shows in the last frames before the start: its symbol in each of
+    ``history`` frames, one lag apart, oldest first, read as one number in base ``n_symbols`` (its key). The
+    symbol is the cell or, with velocity classes, cell * classes + class. Keys that no state has fall back on
+    the state numbered ``fallback + symbol``.
 
     Parameters
     ----------
@@ -43,9 +45,11 @@ class MarkovChain:
     state_keys : (n_keyed,) int64 array
         Rising keys of the first ``n_keyed`` states.
     fallback : int
-        First of the ``n_cells`` states for particles of unknown past.
+        First of the ``n_symbols`` states for particles of unknown past.
     report : dict of str to float
         What learning found.
+    classes : VelocityClasses, optional
+        Classes of the velocity that the states tell apart.
     """
 
     name: str
@@ -58,6 +62,19 @@ class MarkovChain:
     state_keys: NDArray[np.int64]
     fallback: int
     report: dict[str, float] = field(default_factory=dict)
+    classes: VelocityClasses | None = None
+
+    @property
+    def n_symbols(self) -> int:
+        """What a particle may show in one frame [1]."""
+        return self.grid.n_cells * (1 if self.classes is None else self.classes.number)
+
+    def symbols(self, frames: Frames) -> NDArray[np.int32]:
+        """What each particle shows in each frame, (n_frames, n_particles)."""
+        cells = np.asarray(frames.cells)
+        return (
+            cells if self.classes is None else cells * np.int32(self.classes.number) + self.classes.of(frames)
+        )
 
     def states(self, start: Frames) -> NDArray[np.int32]:
         """State of each particle in the last frame, (n_particles,).
@@ -73,15 +90,20 @@ class MarkovChain:
                 f"the {self.name} chain starts from {needed} frames, {len(start.times_s)} given: "
                 "start later, so that as many frames come before"
             )
-        cells = np.asarray(start.cells[len(start.times_s) - needed :: self.lag], np.int64)
-        keys = np.zeros(cells.shape[1], np.int64)
-        for now in cells:
-            keys = keys * self.grid.n_cells + now
+        # A frame more, if there is one: differences of positions may stand for velocities.
+        first = max(0, len(start.times_s) - needed - 1)
+        return self.states_of(self.symbols(start.part(slice(first, None)))[-needed :: self.lag])
+
+    def states_of(self, symbols: NDArray[np.int32]) -> NDArray[np.int32]:
+        """State of each particle from its symbols, (history, n_particles), oldest first; (n_particles,)."""
+        keys = np.zeros(symbols.shape[1], np.int64)
+        for now in symbols:
+            keys = keys * self.n_symbols + now
+        unknown = self.fallback + symbols[-1]
         if self.state_keys.size == 0:
-            return (self.fallback + cells[-1]).astype(np.int32)
+            return unknown.astype(np.int32)
         place = np.minimum(np.searchsorted(self.state_keys, keys), self.state_keys.size - 1)
-        known = self.state_keys[place] == keys
-        return np.where(known, place, self.fallback + cells[-1]).astype(np.int32)
+        return np.where(self.state_keys[place] == keys, place, unknown).astype(np.int32)
 
     def mixing(
         self,
@@ -152,8 +174,9 @@ class MarkovChain:
 
     def arrays(self) -> dict[str, NDArray[Any]]:
         """See `models.Chain.arrays`."""
-        grid = self.grid
-        return {
+        grid, classes = self.grid, self.classes
+        edges = {} if classes is None else {"edges_x": classes.edges_x_m_s, "edges_z": classes.edges_z_m_s}
+        return edges | {
             "bed_m": np.array([grid.width_m, grid.height_m]),
             "grid": np.array([grid.columns, grid.rows]),
             "step": np.array([self.lag, self.history, self.fallback]),
@@ -180,6 +203,7 @@ class MarkovChain:
             columns, rows = (int(count) for count in arrays["grid"])
             lag, history, fallback = (int(number) for number in arrays["step"])
             n_states = arrays["indptr"].size - 1
+            classes = VelocityClasses(arrays["edges_x"], arrays["edges_z"]) if "edges_x" in arrays else None
             matrix = sparse.csr_array(
                 (arrays["data"], arrays["indices"], arrays["indptr"]), shape=(n_states, n_states)
             )
@@ -194,6 +218,7 @@ class MarkovChain:
                 arrays["state_keys"],
                 fallback,
                 json.loads(str(arrays["report"])),
+                classes,
             )
         except KeyError as error:
             raise DataError(f"a chain lacks {error}: build the transitions again") from error

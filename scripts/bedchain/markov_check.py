@@ -3,6 +3,7 @@
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -61,6 +62,7 @@ def check_model(
     estimator: str,
     block: int,
     rng: np.random.Generator,
+    options: dict[str, Any] | None = None,
 ) -> list[Row]:
     """Implied timescales and Chapman-Kolmogorov test of one model at several lags.
 
@@ -81,6 +83,8 @@ def check_model(
         Frames in a block of the bootstrap.
     rng : numpy Generator
         Draws the blocks.
+    options : dict, optional
+        Settings of this model only.
 
     Returns
     -------
@@ -90,7 +94,7 @@ def check_model(
     """
     rows = []
     for lag in lags:
-        relearn = models.relearner(name, frames, grid, lag, estimator)
+        relearn = models.relearner(name, frames, grid, lag, estimator, **(options or {}))
         found, replicates = with_replicates(relearn, frames, sides, lag, block, rng)
         times = sides.gaps[sides.gaps % lag == 0] * frames.interval_s
         rows += finding_rows(name, lag * frames.interval_s, times, found, replicates)
@@ -109,7 +113,7 @@ def with_replicates(
     n_steps = len(frames.times_s) - lag
     one = np.ones(n_steps, np.int64)
     chain = markovian(relearn(one))
-    starts = count_starts(frames, chain.grid, sides, lag, chain.history)
+    starts = count_starts(frames, chain, sides)
     found = findings(chain, starts, sides, one)
     if chain.matrix.nnz > MOST_ENTRIES:
         return found, None

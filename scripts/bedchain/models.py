@@ -13,7 +13,7 @@ from typing import Any, Protocol
 import numpy as np
 from numpy.typing import NDArray
 
-from bedchain import dynamic, static
+from bedchain import dynamic, jump, recurrence, static, velocity_class
 from bedchain.frames import DataError, Frames
 from bedchain.grid import Grid
 from bedchain.markov_chain import MarkovChain
@@ -85,14 +85,26 @@ class Chain(Protocol):
 
 
 # Each learns from frames and takes the keyword arguments that `learn` passes on.
-LEARNERS: dict[str, Callable[..., Chain]] = {"static": static.learn, "dynamic": dynamic.learn}
+LEARNERS: dict[str, Callable[..., Chain]] = {
+    "static": static.learn,
+    "dynamic": dynamic.learn,
+    "velocity_class": velocity_class.learn,
+    "jump": jump.learn,
+    "recurrence": recurrence.learn,
+}
 READERS: dict[str, Callable[[dict[str, NDArray[Any]]], Chain]] = {
     "static": MarkovChain.from_arrays,
     "dynamic": MarkovChain.from_arrays,
+    "velocity_class": MarkovChain.from_arrays,
+    "jump": jump.JumpChain.from_arrays,
+    "recurrence": recurrence.RecurrenceChain.from_arrays,
 }
 
 # Optional: for models that learn faster from other weights of the same steps.
-RELEARNERS: dict[str, Callable[..., Callable[[NDArray[np.int64]], Chain]]] = {"static": static.relearner}
+RELEARNERS: dict[str, Callable[..., Callable[[NDArray[np.int64]], Chain]]] = {
+    "static": static.relearner,
+    "velocity_class": velocity_class.relearner,
+}
 
 
 def learn(

@@ -7,7 +7,7 @@ same from counts alone; here particles start in the states of their model, and e
 """
 
 from collections.abc import Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
@@ -15,7 +15,6 @@ from scipy import sparse
 
 from bedchain import chains, mixing
 from bedchain.frames import DataError, Frames
-from bedchain.grid import Grid
 from bedchain.markov_chain import MarkovChain
 
 
@@ -105,39 +104,38 @@ class Starts:
 
     Parameters
     ----------
-    frames : Frames
-        As many frames, one lag apart, as a past is long; as many particles as there are pasts.
+    symbols : (history, n_pasts) int32 array
+        What particles of each past show in the frames, one lag apart, that make it, oldest first.
     number : tuple of 4 (n_starts, n_pasts) csr_array
         Particles of each group with each past in each frame that a step follows [1].
     """
 
-    frames: Frames
+    symbols: NDArray[np.int32]
     number: tuple[sparse.csr_array, ...]
 
 
-def count_starts(frames: Frames, grid: Grid, sides: Sides, lag: int, history: int) -> Starts:
-    """Find the pasts in a window.
+def count_starts(frames: Frames, chain: MarkovChain, sides: Sides) -> Starts:
+    """Find the pasts in a window, as a chain sees them.
 
     Parameters
     ----------
     frames : Frames
         The window of ``sides``.
-    grid : Grid
+    chain : MarkovChain
+        Its lag, history and symbols count, not its probabilities.
     sides : Sides
-    lag : int
-        Frames in a step.
-    history : int
-        Frames, one lag apart, that make a past.
 
     Returns
     -------
     Starts
         Frames that too few others lead up to hold no particles.
     """
+    lag, history, base = chain.lag, chain.history, chain.n_symbols
     n_starts, before = len(frames.times_s) - lag, (history - 1) * lag
-    keys = np.zeros((n_starts - before, frames.cells.shape[1]), np.int64)
+    shown = chain.symbols(frames)
+    keys = np.zeros((n_starts - before, shown.shape[1]), np.int64)
     for back in range(before, -1, -lag):
-        keys = keys * grid.n_cells + frames.cells[before - back : n_starts - back]
+        keys = keys * base + shown[before - back : n_starts - back]
     pasts, which = np.unique(keys, return_inverse=True)
     place = (np.repeat(np.arange(before, n_starts), keys.shape[1]), which.ravel())
     number = []
@@ -145,10 +143,8 @@ def count_starts(frames: Frames, grid: Grid, sides: Sides, lag: int, history: in
         there = sides.marked[before:n_starts, group].ravel()
         once = (np.ones(there.sum(), np.int64), (place[0][there], place[1][there]))
         number.append(sparse.csr_array(sparse.coo_array(once, shape=(n_starts, pasts.size))))
-    cells = np.array([pasts // grid.n_cells**back % grid.n_cells for back in range(history)][::-1], np.int32)
-    nowhere = np.zeros(cells.shape, np.float32)
-    times = np.arange(history, dtype=np.float64) * (lag * frames.interval_s)
-    return Starts(Frames(times, nowhere, nowhere, cells), tuple(number))
+    symbols = np.array([pasts // base**back % base for back in range(history)][::-1], np.int32)
+    return Starts(symbols, tuple(number))
 
 
 def propagated(
@@ -161,7 +157,7 @@ def propagated(
     chain : MarkovChain
         Of any lag.
     starts : Starts
-        For the chain's lag and history.
+        Of a chain of the same lag, history and symbols.
     sides : Sides
     weights : (n_starts,) int array
         How many times each frame counts as a start (bootstrap).
@@ -176,8 +172,7 @@ def propagated(
     rows = np.flatnonzero(sides.gaps % chain.lag == 0)
     steps = sides.gaps[rows] // chain.lag
     shares = mixing.side_shares(chain.grid, sides.split_x_m, sides.split_z_m)[:, chain.cell_of_state]
-    # the frames of the pasts are one lag apart
-    states = replace(chain, lag=1).states(starts.frames)
+    states = chain.states_of(starts.symbols)
     begin = np.array(
         [np.bincount(states, weights @ number, chain.matrix.shape[0]) for number in starts.number]
     )

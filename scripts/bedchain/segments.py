@@ -22,6 +22,7 @@ STAMP_DIGITS = 12  # of sha256: enough that two sets of inputs never share a fol
 SETTLED = "settled"
 RESTART = "particles.restart"
 RECORD = "segment.json"
+COLUMNS = {0: ["id", "x", "z", "vx", "vz"], 1: ["id", "x", "y", "z", "vx", "vy", "vz"]}  # by depth_walls
 
 
 @dataclass(frozen=True)
@@ -115,6 +116,11 @@ def read_parameters(file: Path) -> dict[str, float | str]:
         r"^variable (\w+) (equal|string) (\S+)", file.read_text(encoding="utf-8"), re.MULTILINE
     )
     return {name: float(value) if style == "equal" else value for name, style, value in found}
+
+
+def frame_columns(parameters: dict[str, float | str]) -> list[str]:
+    """Columns of the frames that ``in.fluidize`` writes, by the parameters of `read_parameters`."""
+    return COLUMNS[int(parameters["depth_walls"])]
 
 
 @contextmanager
@@ -227,7 +233,7 @@ def manifest(run: Run, segments: list[Segment]) -> dict[str, object]:
         "dem_step_s": step_s,
         "frame_interval_s": frame_steps * step_s,
         "number": int(parameters["number"]),
-        "columns": ["id", "x", "z", "vx", "vz"],
+        "columns": frame_columns(parameters),
         "frames": frames,
         "segments": [
             {

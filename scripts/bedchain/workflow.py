@@ -9,9 +9,11 @@ from bedchain.archive import SIMULATE, check_archive
 from bedchain.case import Case, load_case, load_schema
 from bedchain.errors import UserError, report_user_errors
 from bedchain.parameters import solver_parameters
+from bedchain.scene_checks import used_keys
 
 TABLE_SECTIONS = (
     "bed",
+    "drum",
     "particles",
     "contact",
     "gas",
@@ -123,8 +125,16 @@ def solver_values(case: Case) -> dict[str, str]:
 
 
 def table_values(case: Case) -> dict[str, Any]:
-    """Dotted key -> value, of the sections that Table 1 shows."""
-    return {f"{section}.{key}": value for section in TABLE_SECTIONS for key, value in case[section].items()}
+    """Dotted key -> value, of the sections that Table 1 shows and the case uses, without models not built."""
+    used = used_keys(case)
+    values: dict[str, Any] = {}
+    for section in filter(used.__contains__, TABLE_SECTIONS):
+        for key, value in used[section].items():
+            if not isinstance(value, dict):
+                values[f"{section}.{key}"] = value
+            elif key in case["chain"]["models"]:
+                values |= {f"{section}.{key}.{name}": one for name, one in value.items()}
+    return values
 
 
 def modules(*names: str) -> list[str]:

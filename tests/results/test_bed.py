@@ -22,6 +22,8 @@ ROUND_OFF = 1e-9
 # faster than a particle that falls freely from the top of the bed, or is carried by the gas
 FASTEST_FACTOR = 3.0
 GRAVITY = 9.81
+# of the limit: a sound run stays well below what stops it
+OVERLAP_MARGIN = 0.9
 
 
 @pytest.fixture(scope="module")
@@ -112,6 +114,12 @@ def test_series_goes_on_from_segment_to_segment(series, case):
     assert (series["particles_1"] == case["particles"]["number"]).all()
     assert series["smallest_voidage_1"].min() > 0
     assert series["exchange_error_1"].abs().max() < ROUND_OFF
+
+
+def test_no_voidage_was_clipped_and_no_overlap_came_near_the_limit(series, case):
+    assert case["gas"]["voidage_clip"] == "stop"
+    assert (series["voidage_clips_1"] == 0).all()
+    assert 0 < series["largest_overlap_1"].max() < OVERLAP_MARGIN * case["contact"]["largest_overlap_1"]
 
 
 def test_segments_join_without_gap(results, case):

@@ -2,9 +2,11 @@
 """Frames of a run into one trajectory, and what a user is told where one of them is bad."""
 
 import json
+import logging
 
 import numpy as np
 import pytest
+import synthetic_bed
 from synthetic_bed import rolling_bed, write_run
 
 from bedchain.errors import UserError
@@ -50,6 +52,22 @@ def test_trajectory_is_what_was_simulated(run, tmp_path):
     assert (metadata["ids"], metadata["number"]) == ([1, 200], 200)
     assert (metadata["width_m"], metadata["height_m"]) == (WIDTH, HEIGHT)
     assert metadata["columns"] == ["x", "z", "vx", "vz"]
+
+
+def test_dumps_without_velocities_are_taken_and_said(run, tmp_path, monkeypatch, caplog):
+    _, frames, _ = run
+    monkeypatch.setattr(synthetic_bed, "COLUMNS", ["id", "x", "z"])
+    dem = write_run(tmp_path / "bare", frames[:, :2], TIMES, WIDTH, HEIGHT)
+    with caplog.at_level(logging.INFO, "bedchain"):
+        parse_dumps(dem, tmp_path / "b.npy", tmp_path / "b.json", WIDTH, HEIGHT, progress=False)
+    trajectory = np.load(tmp_path / "b.npy")
+    np.testing.assert_array_equal(trajectory[:, :2], frames[:, :2].astype(np.float32))
+    assert np.isnan(trajectory[:, 2:]).all() and "no ['vx', 'vz'] in the dumps" in caplog.text
+    monkeypatch.setattr(synthetic_bed, "COLUMNS", ["id", "x", "vx"])
+    dem = write_run(tmp_path / "flat", frames[:, :2], TIMES, WIDTH, HEIGHT)
+    with pytest.raises(UserError, match="x and z are needed"):
+        parse_dumps(dem, tmp_path / "c.npy", tmp_path / "c.json", WIDTH, HEIGHT, progress=False)
+    assert not (tmp_path / "c.npy").exists()
 
 
 def test_text_dumps_give_the_same_trajectory(run, tmp_path):

@@ -27,7 +27,7 @@ def walk_frames(n_particles: int, steps: int, seed: int = 1) -> Frames:
 def of_model(name: str, frames: Frames, lag: int, gaps: list[int], weights: np.ndarray) -> np.ndarray:
     sides = count_sides(frames, *SPLITS, gaps)
     chain = models.learn(name, frames, GRID, lag, "pooled", weights)
-    starts = count_starts(frames, GRID, sides, lag, chain.history)
+    starts = count_starts(frames, chain, sides)
     rows, remaining = propagated(chain, starts, sides, weights)
     assert rows.tolist() == [row for row, gap in enumerate(gaps) if gap % lag == 0]
     return remaining

@@ -1,0 +1,162 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Models that move tracers and keep their positions: what they give is averaged over runs of the tracers.
+
+They have no transition matrix. What `models.Chain` calls expected values is, for them, a mean over whole runs
+of all tracers with a fixed seed: repeatable, and off the expectation by the error that `TracerChain.runs`
+states.
+"""
+
+from collections.abc import Iterator, Sequence
+
+import numpy as np
+from numba import njit
+from numpy.typing import NDArray
+
+from bedchain import mixing
+from bedchain.frames import Frames
+from bedchain.grid import Grid
+
+# Seed of the runs that stand for expected values.
+SEED = 62015
+# Tracers that expected mixing curves are made of: the share of half of them is off by 0.003 by chance.
+EXPECTED_TRACERS = 50_000
+# Time after which a bed has forgotten its start, and as long again over which the density is averaged.
+LONG_RUN_S = 20.0
+# Tracers followed for the long-run density: every k-th particle.
+LONG_RUN_TRACERS = 10_000
+
+Place = tuple[NDArray[np.float64], NDArray[np.float64]]
+
+
+class TracerChain:
+    """What position-keeping models share; each tells how its tracers go by `walk`.
+
+    Parameters
+    ----------
+    name : str
+        Name of the model.
+    grid : Grid
+        Cells in which densities and paths are given.
+    lag : int
+        Frames in a step.
+    lag_s : float
+        The same [s].
+    report : dict of str to float
+        What learning found.
+    """
+
+    def __init__(self, name: str, grid: Grid, lag: int, lag_s: float, report: dict[str, float]) -> None:
+        self.name, self.grid, self.lag, self.lag_s, self.report = name, grid, lag, lag_s, report
+
+    def walk(self, start: Frames, steps: int, rng: np.random.Generator) -> Iterator[Place]:
+        """Positions x, z [m] of every particle at steps 0 to ``steps``; the same arrays each time."""
+        raise NotImplementedError
+
+    def runs(self, n_particles: int) -> int:
+        """Runs whose mean stands for expected values, enough for `EXPECTED_TRACERS` independent ones."""
+        return -(-EXPECTED_TRACERS // n_particles)
+
+    def mixing(
+        self,
+        start: Frames,
+        split_x_m: float,
+        split_z_m: float,
+        steps: int,
+        rng: np.random.Generator | None = None,
+    ) -> NDArray[np.float64]:
+        """See `models.Chain.mixing`; positions decide at every step, no cell is cut."""
+        mixing.side_shares(self.grid, split_x_m, split_z_m)  # refuses lines outside the bed
+        generators = self._generators(rng, start)
+        if rng is None:
+            start = _every(start, max(1, start.cells.shape[1] * len(generators) // EXPECTED_TRACERS))
+        marked = mixing.sides(np.asarray(start.x_m[-1]), np.asarray(start.z_m[-1]), split_x_m, split_z_m)
+        size = marked.sum(axis=1)
+        still = np.zeros((steps + 1, 4))
+        for generator in generators:
+            for step, (x, z) in enumerate(self.walk(start, steps, generator)):
+                still[step] += _still(x, z, marked, split_x_m, split_z_m)
+        curves = np.divide(
+            still, len(generators) * size, out=np.full(still.shape, np.nan), where=(size > 0)[None]
+        )
+        curves[0] = np.where(size > 0, 1.0, np.nan)
+        return np.asarray(curves)
+
+    def densities(
+        self,
+        start: Frames,
+        marked: NDArray[np.bool_],
+        steps: Sequence[int],
+        rng: np.random.Generator | None = None,
+    ) -> NDArray[np.float64] | NDArray[np.int64]:
+        """See `models.Chain.densities`."""
+        wanted = {int(step): place for place, step in enumerate(steps)}
+        total = np.zeros((len(steps), len(marked), self.grid.n_cells), np.int64)
+        generators = self._generators(rng, start)
+        for generator in generators:
+            for step, cells in enumerate(self.paths(start, max(wanted), generator)):
+                if step in wanted:
+                    total[wanted[step]] += mixing.marked_histogram(cells, marked, self.grid.n_cells)
+        return total if rng is not None else total / len(generators)
+
+    def paths(self, start: Frames, steps: int, rng: np.random.Generator) -> Iterator[NDArray[np.int32]]:
+        """See `models.Chain.paths`."""
+        for x, z in self.walk(start, steps, rng):
+            yield self.grid.cell_of(x, z)
+
+    def long_run_density(self, start: Frames) -> NDArray[np.float64]:
+        """See `models.Chain.long_run_density`: the mean over steps of a long run of some of the particles."""
+        some = _every(start, max(1, start.cells.shape[1] // LONG_RUN_TRACERS))
+        steps = max(int(np.ceil(LONG_RUN_S / self.lag_s)), 1)
+        held = np.zeros(self.grid.n_cells)
+        for step, cells in enumerate(self.paths(some, 2 * steps, np.random.default_rng(SEED))):
+            if step > steps:
+                held += np.bincount(cells, minlength=self.grid.n_cells)
+        return np.asarray(held / held.sum())
+
+    def _generators(self, rng: np.random.Generator | None, start: Frames) -> list[np.random.Generator]:
+        return (
+            [rng] if rng is not None else np.random.default_rng(SEED).spawn(self.runs(start.cells.shape[1]))
+        )
+
+
+def start_places(start: Frames, grid: Grid) -> Place:
+    """Positions in the last frame, in float64 and inside the bed [m].
+
+    Raises
+    ------
+    DataError
+        A particle is outside the bed.
+    """
+    x, z = np.asarray(start.x_m[-1]), np.asarray(start.z_m[-1])
+    grid.cell_of(x, z)
+    # A wall stored in float32 may lie a hair outside.
+    return np.minimum(x.astype(np.float64), grid.width_m), np.minimum(z.astype(np.float64), grid.height_m)
+
+
+def reflect(place: NDArray[np.float64], top: float) -> None:
+    """Mirror positions back into 0 to ``top``, in place, as often as needed."""
+    np.abs(place, out=place)
+    over = place > top
+    if over.any():
+        folded = np.mod(place[over], 2 * top)
+        place[over] = np.minimum(folded, 2 * top - folded)
+
+
+@njit(cache=True)
+def _still(x, z, marked, split_x_m, split_z_m):  # type: ignore[no-untyped-def]
+    """Particles of each group that are on its side."""
+    total = np.zeros(4)
+    for p in range(x.size):
+        left, low = x[p] < split_x_m, z[p] < split_z_m
+        total[0] += marked[0, p] and left
+        total[1] += marked[1, p] and not left
+        total[2] += marked[2, p] and low
+        total[3] += marked[3, p] and not low
+    return total
+
+
+def _every(frames: Frames, stride: int) -> Frames:
+    """Every k-th particle."""
+    some = (slice(None), slice(None, None, stride))
+    vx, vz = (None if array is None else array[some] for array in (frames.vx_m_s, frames.vz_m_s))
+    return Frames(frames.times_s, frames.x_m[some], frames.z_m[some], frames.cells[some], vx, vz)

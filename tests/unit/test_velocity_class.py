@@ -1,0 +1,166 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+import numpy as np
+import pytest
+from made_frames import framed, half_remaining, kept_velocity, on_grid, squared_displacement, stirred
+
+from bedchain import models, velocity
+from bedchain.counting import count_moves
+from bedchain.estimators import ESTIMATORS
+from bedchain.frames import DataError, Frames
+from bedchain.grid import Grid
+from bedchain.mixing import sides
+from bedchain.velocity_class import from_counts
+
+ROUND_OFF = 1e-12
+# Mean-square displacement of the persistent walk (rho = 0.8) after 50 steps, in cells squared.
+PERSISTENT_MSD = 410.00057
+WIDTH, MEMORY, SPEED = 0.1, 0.15, 0.1
+# standard errors of the share of half the particles
+SIGMAS = 4.0
+
+
+def with_velocities(cells: np.ndarray, direction: np.ndarray, grid: Grid) -> Frames:
+    still, frames = np.zeros(cells.shape), framed(cells, grid)
+    return Frames(frames.times_s, frames.x_m, frames.z_m, frames.cells, direction * 0.4, still)
+
+
+def mean_square(chain: models.Chain, start: Frames, middle: int, steps: int) -> float:
+    marked = np.ones((1, start.cells.shape[1]), bool)
+    density = chain.densities(start, marked, [steps])[0, 0]
+    return float(density @ (np.arange(density.size) - middle) ** 2 / density.sum())
+
+
+def persistent_steps() -> tuple[np.ndarray, np.ndarray]:
+    """Cells and directions in two frames: from each cell each way, nine go on and one turns back."""
+    rows = [(i, d, t) for i in range(2, 119) for d in (-1, 1) for t in [1] * 9 + [-1]]
+    i, d, t = np.array(rows, np.int32).T
+    return np.stack((i, i + d * t)), np.stack((d, d * t))
+
+
+def test_the_persistent_walk_is_recovered_exactly():
+    grid = Grid(1.21, 0.01, 121, 1)
+    frames = with_velocities(*persistent_steps(), grid)
+    start = with_velocities(np.array([[60, 60]]), np.array([[-1, 1]]), grid)
+    # two velocities fill two of three classes
+    chain = models.learn("velocity_class", frames, grid, classes=(3, 1))
+    assert chain.report["states_1"] == 2 * 117 and chain.report["fallback_share_1"] == 0
+    assert mean_square(chain, start, 60, 50) == pytest.approx(PERSISTENT_MSD, abs=1e-5)
+
+
+@pytest.mark.parametrize("known_velocities", [True, False])
+def test_a_bed_of_known_correlation_time_mixes_as_it_should(known_velocities):
+    grid, steps = Grid(WIDTH, WIDTH, 20, 20), 40
+    frames = on_grid(kept_velocity(20_000, 81, WIDTH, MEMORY, SPEED, seed=3), grid)
+    if not known_velocities:
+        frames = Frames(frames.times_s, frames.x_m, frames.z_m, frames.cells)
+    known = half_remaining(squared_displacement(np.arange(steps + 1) * 0.025, MEMORY, SPEED), WIDTH)
+    error = {}
+    for name, options in (("static", {}), ("velocity_class", {"classes": (5, 5)})):
+        chain = models.learn(name, frames, grid, **options)
+        curves = chain.mixing(frames.part(slice(20, 22)), WIDTH / 2, WIDTH / 2, steps)
+        error[name] = np.sqrt(((curves - known[:, None]) ** 2).mean())
+    assert chain.report["velocities_from_differences_1"] == (not known_velocities)
+    # what is left is the blur of cells of 5 mm, and of differences that lag behind by half a frame
+    assert error["velocity_class"] < (0.025 if known_velocities else 0.04)
+    assert error["static"] > 0.1
+
+
+def test_a_single_frame_without_velocities_is_no_start():
+    frames, grid = stirred(9)
+    chain = models.learn("velocity_class", frames, grid)
+    with pytest.raises(DataError, match="a single frame without velocities"):
+        chain.mixing(frames.part(slice(1, 2)), 0.02, 0.05, 3)
+
+
+def test_one_class_is_the_static_chain():
+    frames, grid = stirred(3)
+    for estimator in ESTIMATORS:
+        one = models.learn("velocity_class", frames, grid, 2, estimator, classes=(1, 1), fewest_samples=0)
+        static = models.learn("static", frames, grid, 2, estimator)
+        assert abs(one.matrix - static.matrix).max() < ROUND_OFF
+
+
+def test_rows_agree_with_a_plain_loop_and_thin_states_with_their_cell():
+    frames, grid = stirred(4, n_frames=12, n_particles=150)
+    chain = models.learn("velocity_class", frames, grid, 2, classes=(2, 3), fewest_samples=5)
+    shown = chain.symbols(frames)
+    dense, of_cell = np.zeros((240, 240)), np.zeros((40, 240))
+    for frame in range(10):
+        for before, after in zip(shown[frame], shown[frame + 2], strict=True):
+            dense[before, after] += 1
+            of_cell[before // 6, after] += 1
+    visits, rows = dense.sum(axis=1), chain.matrix.toarray()
+    thin = (visits < 5) & (of_cell.sum(axis=1).repeat(6) > 0)
+    assert chain.report["states_returned_1"] == 0
+    for state in range(240):
+        counts = of_cell[state // 6] if thin[state] else dense[state]
+        expected = counts / counts.sum() if counts.sum() else np.eye(240)[state]
+        assert rows[state] == pytest.approx(expected, abs=ROUND_OFF)
+    seen = visits > 0
+    assert chain.report["thin_state_share_1"] == pytest.approx((thin & seen).sum() / seen.sum())
+    assert chain.report["fallback_share_1"] == pytest.approx(visits[thin].sum() / visits.sum())
+    assert 0.01 < chain.report["fallback_share_1"] < 0.5
+
+
+def test_without_a_fallback_the_mean_density_stays():
+    frames, grid = stirred(5)
+    chain = models.learn("velocity_class", frames, grid, fewest_samples=0)
+    before, after = (
+        np.bincount(frames.cells[part].ravel(), minlength=40) for part in (slice(0, -1), slice(1, None))
+    )
+    visits = np.bincount(chain.symbols(frames)[:-1].ravel(), minlength=chain.n_symbols)
+    moved = chain.matrix.T @ visits
+    assert moved.reshape(40, 9).sum(axis=1) == pytest.approx(after, abs=1e-8)
+    assert visits.reshape(40, 9).sum(axis=1) == pytest.approx(before)
+
+
+def test_rows_keep_all_particles_and_monte_carlo_agrees():
+    frames, grid = stirred(6, n_particles=20_000)
+    chain = models.learn("velocity_class", frames, grid)
+    assert np.abs(chain.matrix.sum(axis=1) - 1).max() < ROUND_OFF
+    start = frames.part(slice(20, 22))
+    marked = sides(start.x_m[-1], start.z_m[-1], 0.025, 0.045)
+    exact, drawn = (chain.densities(start, marked, [10], rng)[0] for rng in (None, np.random.default_rng(2)))
+    share = exact / marked.sum(axis=1, keepdims=True)
+    error = np.sqrt(marked.sum(axis=1, keepdims=True) * share * (1 - share))
+    assert (np.abs(drawn - exact) < SIGMAS * error + 1).all()
+
+
+def test_classes_hold_equally_many_and_are_told_apart_at_their_edges():
+    frames = kept_velocity(5000, 30, WIDTH, MEMORY, SPEED, seed=4)
+    classes = velocity.quantile_classes(frames, (3, 4))
+    shares = np.bincount(classes.of(frames).ravel(), minlength=12) / frames.x_m.size
+    assert classes.number == 12 and shares == pytest.approx(np.full(12, 1 / 12), rel=0.1)
+    edges = velocity.VelocityClasses(np.array([-0.1, 0.1]), np.zeros(0))
+    vx = np.array([[-0.2, -0.1, 0.0, 0.1, 0.3]])
+    place = np.zeros(vx.shape)
+    one = Frames(np.zeros(1), place, place, place.astype(np.int32), vx, place)
+    assert edges.of(one).tolist() == [[0, 1, 1, 2, 2]]
+
+
+def test_velocities_that_are_missing_are_differences():
+    frames = kept_velocity(50, 6, WIDTH, MEMORY, SPEED, seed=5)
+    blank = np.full(frames.x_m.shape, np.nan)
+    for vx in (None, blank):
+        bare = Frames(frames.times_s, frames.x_m, frames.z_m, frames.cells, vx, vx)
+        found = velocity.velocities(bare)
+        assert not velocity.measured(bare)
+        assert found[0][3] == pytest.approx((frames.x_m[3] - frames.x_m[2]) / 0.025)
+        assert (found[1][0] == found[1][1]).all()
+    assert velocity.measured(frames)
+
+
+@pytest.mark.parametrize(
+    ("options", "said"), [({"classes": (3,)}, "give two numbers"), ({"classes": (0, 3)}, "each at least 1")]
+)
+def test_impossible_classes_are_refused(options, said):
+    frames, grid = stirred(7)
+    with pytest.raises(DataError, match=said):
+        models.learn("velocity_class", frames, grid, **options)
+
+
+def test_counts_of_other_states_are_refused():
+    frames, grid = stirred(8)
+    classes = velocity.quantile_classes(frames, (3, 3))
+    with pytest.raises(DataError, match="counts of 40 states, 360"):
+        from_counts(count_moves(frames.cells, 40), classes, grid, 0.025)
