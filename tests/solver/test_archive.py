@@ -16,6 +16,7 @@ from bedchain.case import load_case, load_schema
 from bedchain.errors import UserError
 from bedchain.gas_field import gas_near
 from bedchain.trajectory import open_trajectory, read_manifest
+from check_reference import check_reference
 from measure_mixing import measure_mixing
 from pack_reference import check_parameters, finished_manifest, pack_reference
 from parse_dumps import parse_dumps
@@ -128,6 +129,21 @@ def test_gas_comes_back_at_the_nearest_moment(archived, tmp_path):
     )
     assert gas.mesh.n_cells == COLUMNS * ROWS
     assert np.unique(np.load(tmp_path / "gas.npz")["u_z"]).tolist() == [2.0]
+
+
+def test_a_bed_simulated_again_is_compared_frame_by_frame(archived, tmp_path):
+    paths = [archived / "results" / name for name in ("trajectory.npy", "trajectory.json")]
+    table = check_reference(archived / "reference", *paths)
+    assert len(table) == len(TIMES) - START and (table["same_share_1"] == 1).all()
+    np.testing.assert_allclose(table["simulated_height_m"], table["archived_height_m"], atol=LEVEL / 10)
+    other = np.load(paths[0])
+    other[50:, 1, : NUMBER // 2] += 2 * LEVEL
+    np.save(tmp_path / "other.npy", other)
+    table = check_reference(archived / "reference", tmp_path / "other.npy", paths[1])
+    same = table["same_share_1"].to_numpy()
+    assert (same[: 50 - START] == 1).all() and same[50 - START :] == pytest.approx(0.5)
+    late = table["simulated_height_m"] - table["archived_height_m"]
+    assert late.iloc[-1] == pytest.approx(LEVEL, rel=0.1)
 
 
 def test_provenance_names_code_case_versions_and_seeds(archived):
