@@ -22,16 +22,20 @@ os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
 import numpy as np
 from scipy import sparse
 
-from bedchain import chains, dynamic, static, synthetic
+from bedchain import chains, dynamic, models, static, synthetic
 from bedchain.benchmark_table import machine, relative_rows, table
 from bedchain.counting import count_moves, count_pairs
 from bedchain.estimators import transition_matrix
 from bedchain.frames import Frames
 from bedchain.grid import Grid
+from bedchain.markov_chain import MarkovChain
+from bedchain.tracers import TracerChain
 
 INTERVAL_S = 0.025
 SEED = 15013
 PAPER_CELLS, FINE_CELLS = (27, 105), (270, 1050)
+# models that are learned from positions
+PLACED = ("velocity_class", "jump", "recurrence")
 FIELDS = (
     *("work", "method", "particles", "steps", "columns", "rows", "median_s", "cpu_s"),
     *("peak_rss_mb", "own_rss_mb", "entries", "repeats", "target", "met"),
@@ -109,6 +113,25 @@ def static_counts(cells: np.ndarray, grid: Grid) -> Callable[[], sparse.csr_arra
     return lambda: count_moves(cells, grid.n_cells).moves
 
 
+def placed(places: np.ndarray, grid: Grid) -> Frames:
+    """Frames of positions, (n_frames, 2, n_particles); velocities are their differences."""
+    x, z = (np.ascontiguousarray(places[:, row]) for row in (0, 1))
+    return Frames(np.arange(len(places), dtype=np.float64) * INTERVAL_S, x, z, grid.cell_of(x, z))
+
+
+def _run_model(name: str, what: str) -> Callable[[np.ndarray, Grid], Callable[[], Any]]:
+    def prepare(places: np.ndarray, grid: Grid) -> Callable[[], Any]:
+        steps, frames = len(places) - 1, placed(places, grid)
+        if what == "learn":
+            return lambda: models.learn(name, frames, grid)
+        chain, start = models.learn(name, frames, grid), frames.part(slice(0, 3))
+        if what == "curves":
+            return lambda: chain.mixing(start, 0.135, 0.25, steps)
+        return lambda: sum(cells for cells in chain.paths(start, steps, np.random.default_rng(SEED)))
+
+    return prepare
+
+
 def _run_chain(learn: Any, what: str) -> Callable[[np.ndarray, Grid], Callable[[], Any]]:
     def prepare(cells: np.ndarray, grid: Grid) -> Callable[[], Any]:
         steps = len(cells) - 1
@@ -132,6 +155,7 @@ METHODS: dict[str, Callable[[np.ndarray, Grid], Callable[[], Any]]] = {
     "static Monte Carlo": _run_chain(static.learn, "paths"),
     "dynamic curves": _run_chain(dynamic.learn, "curves"),
     "dynamic Monte Carlo": _run_chain(dynamic.learn, "paths"),
+    **{f"{name} {what}": _run_model(name, what) for name in PLACED for what in ("learn", "curves", "paths")},
 }
 
 
@@ -154,7 +178,7 @@ def measure(method: str, path: Path, cells: tuple[int, int], repeats: int) -> di
         [MB], and the number of entries of what was made.
     """
     array, grid = np.load(path, mmap_mode="r"), grid_of(cells)
-    METHODS[method](np.array(array[:6, :1000]), grid)()
+    METHODS[method](np.array(array[:24, ..., :1000]), grid)()
     before = peak_mb()
     run = METHODS[method](array, grid)
     times, busy = [], []
@@ -163,7 +187,8 @@ def measure(method: str, path: Path, cells: tuple[int, int], repeats: int) -> di
         result = run()
         times.append(time.perf_counter() - began)
         busy.append(time.process_time() - worked)
-    entries = result.nnz if sparse.issparse(result) else result.size
+    stored = result.arrays().values() if isinstance(result, MarkovChain | TracerChain) else [result]
+    entries = sum(part.nnz if sparse.issparse(part) else part.size for part in stored)
     return {
         "median_s": statistics.median(times),
         "cpu_s": statistics.median(busy),
@@ -189,6 +214,9 @@ def tasks(quick: bool) -> list[Task]:
         Task(f"Monte Carlo, {run}", "static Monte Carlo", n, steps, PAPER_CELLS, repeats, 1.0),
         Task(f"Monte Carlo, {run}", "dynamic Monte Carlo", n, steps, PAPER_CELLS, repeats),
         Task("static counts, one cell a diameter", "counts", n, steps, FINE_CELLS, repeats),
+        *(Task("learning", f"{name} learn", n, steps, PAPER_CELLS, 1, limit_mb=1000) for name in PLACED),
+        *(Task("mixing curves", f"{name} curves", n, steps, PAPER_CELLS, 1) for name in PLACED),
+        *(Task(f"Monte Carlo, {run}", f"{name} paths", n, steps, PAPER_CELLS, repeats) for name in PLACED),
         *(
             Task("static counts from disk", "counts", m, steps, PAPER_CELLS, r, limit_mb=2000)
             for m, r in large
@@ -199,9 +227,11 @@ def tasks(quick: bool) -> list[Task]:
 def run_task(task: Task, folder: Path) -> dict[str, Any]:
     """Measure a task in a fresh process, on a trajectory that is made if need be and deleted when large."""
     columns, rows = task.cells
-    path = folder / f"cells_{task.particles}_{columns}x{rows}.npy"
+    places = task.method.split()[0] in PLACED
+    path = folder / f"{'places' if places else 'cells'}_{task.particles}_{columns}x{rows}.npy"
     if not path.exists():
-        synthetic.write_cells(path, grid_of(task.cells), task.particles, task.steps + 1, SEED)
+        frames = task.steps + 1
+        synthetic.write_cells(path, grid_of(task.cells), task.particles, frames, SEED, INTERVAL_S, places)
         os.sync()  # or writing it to disk is timed as reading it
     command = [sys.executable, __file__, "--method", task.method, "--cells", f"{columns}x{rows}"]
     command += ["--trajectory", str(path), "--repeats", str(task.repeats)]

@@ -48,12 +48,13 @@ def plot_autocorrelation(
             _draw(msd, part[part["time_s"] > 0].assign(cm2=1e4 * part["msd_m2"]), "cm2", dem_colour)
             auto.axhline(0, color=LINE_COLOUR, lw=0.6)
             auto.set_ylabel("displacement autocorrelation [1]")
-            auto.set_title(name, loc="left")
+            spans = sorted({f"{span:g} s" for span in part["span_s"]})
+            auto.set_title(f"{name}, displacements over {' or '.join(spans)}", loc="left")
             msd.set(xscale="log", yscale="log", ylabel="mean-square displacement [cm²]")
         for axes in panels[-1]:
             axes.set_xlabel("time between [s]")
         handles, labels = panels[0, 0].get_legend_handles_labels()
-        figure.legend(handles, labels, loc="outside upper center", ncols=4, handlelength=2.8)
+        figure.legend(handles, labels, loc="outside upper center", ncols=3, handlelength=2.8)
         save_figure(figure, png, pdf, resolution_dpi)
     write_csv(table, csv)
 
@@ -61,15 +62,14 @@ def plot_autocorrelation(
 def _draw(axes: Axes, table: pd.DataFrame, column: str, dem_colour: str) -> None:
     styles = model_styles(set(table["source"]) - {"dem"})
     for source, curve in table.groupby("source", sort=False):
-        span = f", {curve['span_s'].iloc[0]:g} s"
         if source == "dem":
-            axes.plot(curve["time_s"], curve[column], color=dem_colour, lw=2.0, label=f"DEM{span}")
+            axes.plot(curve["time_s"], curve[column], color=dem_colour, lw=2.0, label="DEM")
             continue
         style = styles[str(source)]
         axes.plot(
             curve["time_s"], np.where(curve[column] == 0, np.nan, curve[column]), color=style.colour,
             ls=style.dash, marker=style.marker, ms=3, mfc="white" if source == BASELINE else style.colour,
-            label=f"{label(str(source))}{span}",
+            label=label(str(source)),
         )  # fmt: skip
     axes.grid(axis="y", color="#e2e2e2", linewidth=0.5)
     axes.set_axisbelow(True)

@@ -125,7 +125,7 @@ def test_scores_need_no_chain_of_the_comparison(finished, tmp_path):
         (tmp_path / name).parent.mkdir(parents=True, exist_ok=True)
         (tmp_path / name).symlink_to(finished / name)
     jobs = planned(tmp_path, "scores")
-    needed = PARTICLES - {"measure_mixing"} | {"assign_cells", "plot_distribution"}
+    needed = PARTICLES - AUDIT - {"measure_mixing"} | {"assign_cells", "plot_distribution"}
     assert set(jobs) - {"scores"} == SCORES | needed
     assert jobs["plot_distribution"] == 1
 
@@ -150,7 +150,7 @@ def with_archive(finished, tmp_path):
 
 def test_an_archived_bed_is_unpacked_and_no_solver_runs(with_archive):
     jobs = planned(with_archive)
-    assert set(jobs) == ALL - PARTICLES | {"unpack_reference"}
+    assert set(jobs) == ALL - (PARTICLES - AUDIT) | {"unpack_reference"}
     assert jobs["unpack_reference"] == 1
     assert set(planned(with_archive, "--config", "reference=simulate")) == ALL
 

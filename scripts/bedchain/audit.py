@@ -272,7 +272,9 @@ def wall_share(slimness: float) -> float:
 
 def wall_criteria(scene: Scene) -> Iterator[Criterion]:
     """Friction on walls, and the third dimension."""
-    resting = 1 - min(1, numbers.pressure_share(scene))
+    # Walls that hold the particles count at rest, as the side walls do; one layer has none, and real ones
+    # would bear only what the gas does not carry
+    resting = 1 if scene.layered else 1 - min(1, numbers.pressure_share(scene))
     janssen = 2 * scene.friction * STRESS_RATIO * scene.depth
     source = (
         "a hundredth of the weight; Janssen 1895, in Nedderman 1992, Statics and Kinematics of Granular "
@@ -285,7 +287,7 @@ def wall_criteria(scene: Scene) -> Iterator[Criterion]:
     )  # fmt: skip
     yield Criterion(
         "friction in front and behind", "Janssen's share of the weight",
-        "the same with T, of what the gas does not carry",
+        "the same with T; for one layer, of what the gas does not carry",
         resting * wall_share(janssen / scene.thickness), 0.01, source, scene.layered,
     )  # fmt: skip
     yield Criterion(

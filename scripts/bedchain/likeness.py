@@ -10,6 +10,7 @@ from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
+from scipy.spatial.distance import pdist, squareform
 
 from bedchain.frames import Frames
 from bedchain.grid import Grid
@@ -36,7 +37,7 @@ class Likeness:
 
     def distances(self) -> NDArray[np.float64]:
         """Distance of each frame from each other, (n_frames, n_frames); its mean square is 6."""
-        return np.stack([self.to(frame) for frame in self.fields])
+        return np.asarray(squareform(pdist(self.fields.astype(np.float64))))
 
     def to(self, field: NDArray[np.float32]) -> NDArray[np.float64]:
         """Distance of one field, (3 n_coarse,), from those of all frames, (n_frames,)."""

@@ -104,6 +104,7 @@ READERS: dict[str, Callable[[dict[str, NDArray[Any]]], Chain]] = {
 RELEARNERS: dict[str, Callable[..., Callable[[NDArray[np.int64]], Chain]]] = {
     "static": static.relearner,
     "velocity_class": velocity_class.relearner,
+    "recurrence": recurrence.relearner,
 }
 
 

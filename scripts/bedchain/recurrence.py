@@ -11,7 +11,7 @@ order. Steps count alike whatever the estimator.
 """
 
 import json
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from dataclasses import astuple, dataclass
 from typing import Any
 
@@ -83,6 +83,8 @@ class RecurrenceChain(TracerChain):
         The window is too short to jump in.
     """
 
+    expected_paths = EXPECTED_PATHS
+
     def __init__(
         self,
         grid: Grid,
@@ -98,10 +100,6 @@ class RecurrenceChain(TracerChain):
         self.settings, self.places_m, self.weights, self.likeness = settings, places_m, weights, likeness
         self.usable = np.repeat(np.arange(weights.size), weights)
         self.targets = self._targets() if settings.order == "recurrence" else []
-
-    def runs(self, n_particles: int) -> int:
-        """`EXPECTED_PATHS`, whatever the number of particles."""
-        return EXPECTED_PATHS
 
     def walk(self, start: Frames, steps: int, rng: np.random.Generator) -> Iterator[Place]:
         """See `tracers.TracerChain.walk`; all randomness is in the path."""
@@ -217,15 +215,27 @@ def learn(
     RecurrenceChain
         Its report holds the mean distance that jumps lead over, and that of a step, over that of all frames.
     """
-    starts, weights = step_starts(frames.cells, lag, step_weights=step_weights)
-    chosen, likeness = (
-        Settings(**settings),
-        compare(frames, grid, settings.get("coarse_m", Settings.coarse_m)),
-    )
+    _, weights = step_starts(frames.cells, lag, step_weights=step_weights)
+    return relearner(frames, grid, lag, estimator, **settings)(weights)
+
+
+def relearner(
+    frames: Frames, grid: Grid, lag: int = 1, estimator: str = "pooled", **settings: Any
+) -> Callable[[NDArray[np.int64]], RecurrenceChain]:
+    """`learn` as a function of ``step_weights`` that has compared the frames; arguments as `learn`."""
+    chosen = Settings(**settings)
+    likeness = compare(frames, grid, chosen.coarse_m)
     places = np.stack([np.asarray(frames.x_m, np.float32), np.asarray(frames.z_m, np.float32)])
-    chain = RecurrenceChain(grid, lag, lag * frames.interval_s, {}, chosen, places, weights, likeness)
-    chain.report |= _report(chain) | {"velocities_from_differences_1": float(not measured(frames))}
-    return chain
+    note = {"velocities_from_differences_1": float(not measured(frames))}
+
+    def again(weights: NDArray[np.int64]) -> RecurrenceChain:
+        chain = RecurrenceChain(
+            grid, lag, lag * frames.interval_s, note.copy(), chosen, places, weights, likeness
+        )
+        chain.report |= _report(chain)
+        return chain
+
+    return again
 
 
 def _report(chain: RecurrenceChain) -> dict[str, float]:

@@ -10,7 +10,7 @@ from bedchain.case_checks import Finding, reads
 from bedchain.case_numbers import START_SPACING_DIAMETERS, is_multiple, nearest_multiple
 
 READ_WITHOUT_GAS = ("model", "density_kg_m3", "viscosity_Pa_s")  # by the audit
-STEPS_OF_GAS = ("gas_step_s", "ramp_s")
+UNUSED_WITHOUT_GAS = {"time": ("gas_step_s", "ramp_s"), "contact": ("largest_overlap_1",)}  # bedFoam's
 
 
 def used_keys(case: dict[str, Any]) -> dict[str, Any]:
@@ -21,13 +21,14 @@ def used_keys(case: dict[str, Any]) -> dict[str, Any]:
     case : dict
         The case with its defaults; sections that the schema refused may be of any kind.
     """
-    gas, time = case.get("gas"), case.get("time")
-    if not isinstance(gas, dict) or gas.get("model") != "none" or not isinstance(time, dict):
+    gas = case.get("gas")
+    if not isinstance(gas, dict) or gas.get("model") != "none":
         return case
-    return case | {
-        "gas": {key: value for key, value in gas.items() if key in READ_WITHOUT_GAS},
-        "time": {key: value for key, value in time.items() if key not in STEPS_OF_GAS},
-    }
+    used = case | {"gas": {key: value for key, value in gas.items() if key in READ_WITHOUT_GAS}}
+    for section, unused in UNUSED_WITHOUT_GAS.items():
+        if isinstance(keys := case.get(section), dict):
+            used[section] = {key: value for key, value in keys.items() if key not in unused}
+    return used
 
 
 def checked_keys(case: dict[str, Any]) -> dict[str, Any]:

@@ -56,14 +56,20 @@ def _advance(x, z, u, w, crowd, bubbles, time_s, step_s, width_m, height_m, rng)
 
 
 def write_cells(
-    path: Path, grid: Grid, n_particles: int, n_frames: int, seed: int, interval_s: float = 0.025
+    path: Path,
+    grid: Grid,
+    n_particles: int,
+    n_frames: int,
+    seed: int,
+    interval_s: float = 0.025,
+    places: bool = False,
 ) -> None:
     """Write the cells of a made-up bubbling bed, one frame in memory at a time.
 
     Parameters
     ----------
     path : Path
-        .npy to make, int32 (n_frames, n_particles).
+        .npy to make, int32 (n_frames, n_particles), or float32 (n_frames, 2, n_particles) of positions [m].
     grid : Grid
         The cells.
     n_particles, n_frames : int
@@ -72,6 +78,8 @@ def write_cells(
         Seed of everything random.
     interval_s : float
         Time between frames [s].
+    places : bool
+        Write positions in the place of cells.
     """
     rng = np.random.default_rng(seed)
     x, z = rng.random(n_particles) * grid.width_m, rng.random(n_particles) * min(REST_HEIGHT_M, grid.height_m)
@@ -80,10 +88,12 @@ def write_cells(
     coarse = Grid(grid.width_m, grid.height_m, 9, 35)
     full = n_particles / (coarse.n_cells * REST_HEIGHT_M / grid.height_m)
     with path.open("wb") as stream:
-        header = {"descr": "<i4", "fortran_order": False, "shape": (n_frames, n_particles)}
+        shape = (n_frames, 2, n_particles) if places else (n_frames, n_particles)
+        header = {"descr": "<f4" if places else "<i4", "fortran_order": False, "shape": shape}
         npy_format.write_array_header_1_0(stream, header)
         for frame in range(n_frames):
-            stream.write(grid.cell_of(x, z).astype("<i4").tobytes())
+            now = np.stack((x, z)).astype("<f4") if places else grid.cell_of(x, z).astype("<i4")
+            stream.write(now.tobytes())
             crowd = np.bincount(coarse.cell_of(x, z), minlength=coarse.n_cells) / full
             crowd = crowd.reshape(coarse.rows, coarse.columns)
             _advance(

@@ -2,8 +2,8 @@
 """Models that move tracers and keep their positions: what they give is averaged over runs of the tracers.
 
 They have no transition matrix. What `models.Chain` calls expected values is, for them, a mean over whole runs
-of all tracers with a fixed seed: repeatable, and off the expectation by the error that `TracerChain.runs`
-states.
+of tracers with a fixed seed: repeatable, and off the expectation by what so many tracers and paths leave to
+chance.
 """
 
 from collections.abc import Iterator, Sequence
@@ -31,6 +31,12 @@ Place = tuple[NDArray[np.float64], NDArray[np.float64]]
 class TracerChain:
     """What position-keeping models share; each tells how its tracers go by `walk`.
 
+    Attributes
+    ----------
+    expected_paths : int
+        Runs whose mean stands for expected values. 1 where tracers are independent: each particle is then
+        run as many times at once as make `EXPECTED_TRACERS`.
+
     Parameters
     ----------
     name : str
@@ -45,16 +51,14 @@ class TracerChain:
         What learning found.
     """
 
+    expected_paths = 1
+
     def __init__(self, name: str, grid: Grid, lag: int, lag_s: float, report: dict[str, float]) -> None:
         self.name, self.grid, self.lag, self.lag_s, self.report = name, grid, lag, lag_s, report
 
     def walk(self, start: Frames, steps: int, rng: np.random.Generator) -> Iterator[Place]:
         """Positions x, z [m] of every particle at steps 0 to ``steps``; the same arrays each time."""
         raise NotImplementedError
-
-    def runs(self, n_particles: int) -> int:
-        """Runs whose mean stands for expected values, enough for `EXPECTED_TRACERS` independent ones."""
-        return -(-EXPECTED_TRACERS // n_particles)
 
     def mixing(
         self,
@@ -66,9 +70,11 @@ class TracerChain:
     ) -> NDArray[np.float64]:
         """See `models.Chain.mixing`; positions decide at every step, no cell is cut."""
         mixing.side_shares(self.grid, split_x_m, split_z_m)  # refuses lines outside the bed
-        generators = self._generators(rng, start)
+        generators = [rng] if rng is not None else self._expected()
         if rng is None:
-            start = _every(start, max(1, start.cells.shape[1] * len(generators) // EXPECTED_TRACERS))
+            n = start.cells.shape[1]
+            alike = EXPECTED_TRACERS // self.expected_paths
+            start = _chosen(start, self._copies(n) if n < alike else np.arange(0, n, n // alike))
         marked = mixing.sides(np.asarray(start.x_m[-1]), np.asarray(start.z_m[-1]), split_x_m, split_z_m)
         size = marked.sum(axis=1)
         still = np.zeros((steps + 1, 4))
@@ -90,13 +96,17 @@ class TracerChain:
     ) -> NDArray[np.float64] | NDArray[np.int64]:
         """See `models.Chain.densities`."""
         wanted = {int(step): place for place, step in enumerate(steps)}
+        n = marked.shape[1]
         total = np.zeros((len(steps), len(marked), self.grid.n_cells), np.int64)
-        generators = self._generators(rng, start)
+        generators = [rng] if rng is not None else self._expected()
+        if rng is None:
+            copies = self._copies(start.cells.shape[1])
+            start, marked = _chosen(start, copies), marked[:, copies]
         for generator in generators:
             for step, cells in enumerate(self.paths(start, max(wanted), generator)):
                 if step in wanted:
                     total[wanted[step]] += mixing.marked_histogram(cells, marked, self.grid.n_cells)
-        return total if rng is not None else total / len(generators)
+        return total if rng is not None else total / (len(generators) * marked.shape[1] / n)
 
     def paths(self, start: Frames, steps: int, rng: np.random.Generator) -> Iterator[NDArray[np.int32]]:
         """See `models.Chain.paths`."""
@@ -105,7 +115,8 @@ class TracerChain:
 
     def long_run_density(self, start: Frames) -> NDArray[np.float64]:
         """See `models.Chain.long_run_density`: the mean over steps of a long run of some of the particles."""
-        some = _every(start, max(1, start.cells.shape[1] // LONG_RUN_TRACERS))
+        n = start.cells.shape[1]
+        some = _chosen(start, np.arange(0, n, max(1, n // LONG_RUN_TRACERS)))
         steps = max(int(np.ceil(LONG_RUN_S / self.lag_s)), 1)
         held = np.zeros(self.grid.n_cells)
         for step, cells in enumerate(self.paths(some, 2 * steps, np.random.default_rng(SEED))):
@@ -113,10 +124,13 @@ class TracerChain:
                 held += np.bincount(cells, minlength=self.grid.n_cells)
         return np.asarray(held / held.sum())
 
-    def _generators(self, rng: np.random.Generator | None, start: Frames) -> list[np.random.Generator]:
-        return (
-            [rng] if rng is not None else np.random.default_rng(SEED).spawn(self.runs(start.cells.shape[1]))
-        )
+    def _expected(self) -> list[np.random.Generator]:
+        return np.random.default_rng(SEED).spawn(self.expected_paths)
+
+    def _copies(self, n_particles: int) -> NDArray[np.int64]:
+        """Every particle once, or as often as chance needs."""
+        often = 1 if self.expected_paths > 1 else -(-EXPECTED_TRACERS // n_particles)
+        return np.tile(np.arange(n_particles), often)
 
 
 def start_places(start: Frames, grid: Grid) -> Place:
@@ -155,8 +169,9 @@ def _still(x, z, marked, split_x_m, split_z_m):  # type: ignore[no-untyped-def]
     return total
 
 
-def _every(frames: Frames, stride: int) -> Frames:
-    """Every k-th particle."""
-    some = (slice(None), slice(None, None, stride))
-    vx, vz = (None if array is None else array[some] for array in (frames.vx_m_s, frames.vz_m_s))
-    return Frames(frames.times_s, frames.x_m[some], frames.z_m[some], frames.cells[some], vx, vz)
+def _chosen(frames: Frames, particles: NDArray[np.int64]) -> Frames:
+    """The last two frames of some particles, in a new order."""
+    last = frames.part(slice(max(0, len(frames.times_s) - 2), None))
+    x, z, cells = np.asarray(last.x_m), np.asarray(last.z_m), np.asarray(last.cells)
+    vx, vz = (None if v is None else np.asarray(v)[:, particles] for v in (last.vx_m_s, last.vz_m_s))
+    return Frames(last.times_s, x[:, particles], z[:, particles], cells[:, particles], vx, vz)

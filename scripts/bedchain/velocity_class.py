@@ -15,12 +15,11 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy import sparse
 
-from bedchain.counting import Counts, count_moves
+from bedchain.counting import Counts, count_moves, step_starts
 from bedchain.estimators import leak, open_classes, transition_matrix
 from bedchain.frames import DataError, Frames
 from bedchain.grid import Grid
 from bedchain.markov_chain import MarkovChain
-from bedchain.stepwise import count_steps
 from bedchain.velocity import VelocityClasses, measured, quantile_classes
 
 CLASSES = (3, 3)
@@ -52,10 +51,8 @@ def learn(
     -------
     MarkovChain
     """
-    edges, states = _states(frames, grid, classes)
-    counts = count_moves(states, grid.n_cells * edges.number, lag, step_weights=step_weights)
-    chain = from_counts(counts, edges, grid, lag * frames.interval_s, estimator, fewest_samples)
-    return _noted(chain, frames)
+    _, weights = step_starts(frames.cells, lag, step_weights=step_weights)
+    return relearner(frames, grid, lag, estimator, classes, fewest_samples)(weights)
 
 
 def relearner(
@@ -66,12 +63,17 @@ def relearner(
     classes: Sequence[int] = CLASSES,
     fewest_samples: int = FEWEST_SAMPLES,
 ) -> Callable[[NDArray[np.int64]], MarkovChain]:
-    """`learn` as a function of ``step_weights`` that has counted already; arguments as `learn`."""
+    """`learn` as a function of ``step_weights`` that knows all states already; arguments as `learn`."""
     edges, states = _states(frames, grid, classes)
-    steps, lag_s = count_steps(states, grid.n_cells * edges.number, lag), lag * frames.interval_s
-    return lambda weights: _noted(
-        from_counts(steps.weighted(weights), edges, grid, lag_s, estimator, fewest_samples), frames
-    )
+    n_states, lag_s = grid.n_cells * edges.number, lag * frames.interval_s
+    note = {"velocities_from_differences_1": float(not measured(frames))}
+
+    def again(weights: NDArray[np.int64]) -> MarkovChain:
+        counts = count_moves(states, n_states, lag, step_weights=weights)
+        chain = from_counts(counts, edges, grid, lag_s, estimator, fewest_samples)
+        return replace(chain, report=chain.report | note)
+
+    return again
 
 
 def from_counts(
@@ -172,9 +174,3 @@ def _replaced(
     """Rows of states, those of thin ones replaced by the rows of their cells."""
     source = np.where(thin, thin.size + cell_of_state, np.arange(thin.size))
     return sparse.csr_array(sparse.csr_array(sparse.vstack((rows, of_cells), format="csr"))[source])
-
-
-def _noted(chain: MarkovChain, frames: Frames) -> MarkovChain:
-    """The chain with a note on where the velocities came from."""
-    report = chain.report | {"velocities_from_differences_1": float(not measured(frames))}
-    return replace(chain, report=report)

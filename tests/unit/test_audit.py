@@ -123,8 +123,8 @@ def test_wall_share_of_janssen():
     assert audit.wall_share(1e-4) == pytest.approx(0.5e-4, rel=1e-3)
 
 
-@pytest.mark.parametrize("name", ["paper", "short"])
-def test_the_paper_s_and_the_short_bed_are_built_as_the_audit_says(name):
+@pytest.mark.parametrize("name", ["paper", "short", "mueller"])
+def test_the_shipped_beds_are_built_as_the_audit_says(name):
     rows = audit.audit(scene_numbers.scene_of(load_case(ROOT / "cases" / name / "case.yaml")))
     assert set(rows["decision"]) == {"keep", "drop"}
     assert (rows["agrees"] == "yes").all()
