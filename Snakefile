@@ -9,7 +9,7 @@ import sys
 sys.path.insert(0, f"{workflow.basedir}/scripts")
 
 from bedchain.parameters import weight_per_area
-from bedchain.workflow import case_or_exit, modules, pick, reference_or_exit
+from bedchain.workflow import case_or_exit, cell_size, modules, pick, reference_or_exit
 from bedchain.workflow import solver_values, source_files, table_values
 
 NAME = config.get("case", "short")
@@ -42,6 +42,7 @@ PLOTS = [
     "fig_chapman_kolmogorov",
     "fig_timescales",
     "fig_stationarity",
+    *(["fig_discussion"] if {*MODEL_FIGURES} & {*MODELS} else []),
 ]
 SCORE_PLOTS = ["fig_pareto", "fig5_best", "fig_autocorrelation", "fig_distribution_best"]
 
@@ -49,6 +50,7 @@ SCORE_PLOTS = ["fig_pareto", "fig5_best", "fig_autocorrelation", "fig_distributi
 rule all:
     input:
         expand(f"{FIGURES}/{{name}}{{form}}", name=PLOTS, form=FORMS.values()),
+        f"{FIGURES}/film.mp4",
         expand(
             f"{RESULTS}/{{name}}",
             name=[
@@ -60,6 +62,7 @@ rule all:
                 "table1.csv",
                 "audit.csv",
                 "provenance.json",
+                *(["agreement.csv"] if source_files(f"cases/{NAME}", "claims.csv") else []),
             ],
         ),
 
@@ -408,6 +411,48 @@ rule plot_stationarity:
         "scripts/plot_stationarity.py"
 
 
+rule discuss_errors:
+    input:
+        modules("averaging", "comparison", "frames", "grid", "mixing", "models", "noise", "stage"),
+        modules("trajectory"),
+        **TRAJECTORY,
+        mixing=rules.compare_mixing.output.mixing,
+    output:
+        discussion=f"{RESULTS}/discussion.csv",
+    log:
+        f"{LOGS}/discuss_errors.log",
+    benchmark:
+        f"{BENCHMARKS}/discuss_errors.tsv"
+    conda:
+        "envs/python.yaml"
+    params:
+        **pick(CASE, "cells", "mixing", "discussion", "chain.lag_s", "chain.estimator"),
+        learning=CASE["learning"],
+        comparison=pick(CASE, "comparison.start_s", "comparison.end_s"),
+        names=[model for model in MODEL_FIGURES if model in MODELS],
+    script:
+        "scripts/discuss_errors.py"
+
+
+rule plot_discussion:
+    input:
+        modules("errors", "figures", "stage"),
+        discussion=rules.discuss_errors.output.discussion,
+    output:
+        multiext(f"{FIGURES}/fig_discussion", **FORMS),
+    log:
+        f"{LOGS}/plot_discussion.log",
+    conda:
+        "envs/python.yaml"
+    params:
+        **pick(CASE, "figures.resolution_dpi"),
+        own_cell_m=cell_size(CASE),
+        own_lag_s=CASE["chain"]["lag_s"],
+        colours={model: CASE["figures"][f"{model}_colour"] for model in MODELS},
+    script:
+        "scripts/plot_discussion.py"
+
+
 rule diagnose_chains:
     input:
         modules(
@@ -611,6 +656,26 @@ rule plot_snapshot:
         "scripts/plot_snapshot.py"
 
 
+rule make_film:
+    input:
+        modules("canvas", "cell_store", "figures", "frames", "models", "stage"),
+        **TRAJECTORY,
+        cells=rules.assign_cells.output.cells,
+        transitions=f"{RESULTS}/transitions_{MODELS[0]}.npz",
+    output:
+        film=f"{FIGURES}/film.mp4",
+    log:
+        f"{LOGS}/make_film.log",
+    conda:
+        "envs/python.yaml"
+    params:
+        **pick(CASE, "comparison.start_s", "comparison.end_s", "mixing.split_x_m", "chain.seed"),
+        **pick(CASE, "particles.diameter_m", "bed.thickness_m", "gas.cell_size_m"),
+        colours=[CASE["figures"][f"{half}_colour"] for half in ["left", "right"]],
+    script:
+        "scripts/make_film.py"
+
+
 rule plot_difference:
     input:
         modules("cell_store", "diagnostics", "errors", "figures", "grid", "stage", "storage"),
@@ -663,6 +728,26 @@ rule plot_timescales:
         "scripts/plot_timescales.py"
 
 
+# Where a case stands for a publication: its claims, one by one.
+rule write_agreement:
+    input:
+        modules("agreement", "stage"),
+        claims=f"cases/{NAME}/claims.csv",
+        metrics=rules.compare_mixing.output.metrics,
+        mixing=rules.compare_mixing.output.mixing,
+        timing=rules.time_models.output.timing,
+    output:
+        agreement=f"{RESULTS}/agreement.csv",
+    log:
+        f"{LOGS}/write_agreement.log",
+    conda:
+        "envs/python.yaml"
+    params:
+        **pick(CASE, "chain.models"),
+    script:
+        "scripts/write_agreement.py"
+
+
 # Every model chosen by validation inside the learning window and tested once: snakemake --cores 2 scores
 rule scores:
     input:
@@ -676,7 +761,8 @@ rule score_models:
         modules("model_styles", "models", "regrid", "runs", "score_rows", "selection", "stage", "starts"),
         modules("storage", "trial"),
         **TRAJECTORY,
-        repeats=expand(f"{RESULTS}/repeats/{{repeat}}/trajectory.npy", repeat=REPEATS),
+        # an archive keeps the repeats' curves, not their positions
+        repeats=expand(f"{RESULTS}/repeats/{{repeat}}/trajectory.npy", repeat=[] if REFERENCE else REPEATS),
     output:
         scores=f"{RESULTS}/scores.csv",
         selection=f"{RESULTS}/selection.csv",

@@ -17,6 +17,7 @@ from bedchain.trajectory import open_trajectory
 
 TITLES = {
     "pressure_drop": "pressure drop [Pa]",
+    "surface_angle": "inclination of the surface [rad]",
     "particle_height": "mean particle height [m]",
     "share_left": "share in the left half [1]",
     "share_low": "share in the lower part [1]",
@@ -30,7 +31,7 @@ def plot_stationarity(
     start_s: float, end_s: float, split_x_m: float, split_z_m: float,
     row_m: float, thickness_m: float, diameter_m: float, resolution_dpi: int,
 ) -> None:  # fmt: skip
-    """Judge pressure drop, height, shares of both sides and the voidage by height.
+    """Judge pressure drop (in a drum the inclination), height, shares of both sides and voidage by height.
 
     Parameters
     ----------
@@ -61,8 +62,9 @@ def plot_stationarity(
     edges = np.linspace(0, described["height_m"], rows + 1)
     profile = profiles(store[frames, 1], edges, described["width_m"], thickness_m, diameter_m)
     interval_s = described["frame_interval_s"]
+    first, unit = ("pressure_drop", "Pa") if "pressure_drop_Pa" in series else ("surface_angle", "rad")
     seen = {
-        "pressure_drop": ("Pa", step_s, series["pressure_drop_Pa"].to_numpy()),
+        first: (unit, step_s, series[f"{first}_{unit}"].to_numpy()),
         "particle_height": ("m", step_s, series["mean_height_m"].to_numpy()),
         "share_left": ("1", interval_s, (store[frames, 0] < split_x_m).mean(axis=1)),
         "share_low": ("1", interval_s, (store[frames, 1] < split_z_m).mean(axis=1)),
@@ -80,7 +82,7 @@ def plot_stationarity(
     with figure_style():
         figure = plt.figure(figsize=(DOUBLE_COLUMN_IN, 3.6))
         grid = figure.add_gridspec(2, 3, width_ratios=(1, 1, 0.9))
-        for at, name in enumerate(TITLES):
+        for at, name in enumerate(seen):
             axes = figure.add_subplot(grid[at // 2, at % 2])
             _draw_series(axes, shown[shown["quantity"] == name], table, name)
             if at >= 2:

@@ -37,7 +37,7 @@ ALL = {
     *("compare_mixing", "time_models", "plot_cells", "plot_cost", "plot_distribution", "plot_mixing"),
     *("plot_snapshot", "write_table", "write_provenance", "audit_scene"),
     *("diagnose_chains", "plot_difference", "plot_chapman_kolmogorov", "plot_timescales"),
-    "plot_stationarity",
+    *("plot_stationarity", "discuss_errors", "plot_discussion", "make_film"),
 }
 AUDIT = {"audit_scene"}  # reads neither time nor cells
 PARTICLES = AUDIT | {
@@ -196,8 +196,13 @@ def test_another_grid_runs_the_cells_and_what_follows(finished, case):
         ("cost_colour", "red", {"plot_cost": 1}),
         ("distribution_colour_map", "magma", {"plot_distribution": 2}),
         ("dem_colour", "red", {"plot_mixing": 2, "plot_chapman_kolmogorov": 1}),
-        ("static_colour", "red", {"plot_mixing": 2, "plot_chapman_kolmogorov": 1, "plot_timescales": 1}),
+        (
+            "static_colour",
+            "red",
+            {"plot_mixing": 2, "plot_chapman_kolmogorov": 1, "plot_timescales": 1, "plot_discussion": 1},
+        ),
         ("snapshot_colour_map", "magma", {"plot_snapshot": 1}),
+        ("left_colour", "red", {"make_film": 1}),
     ],
 )
 def test_a_colour_runs_only_its_figure(finished, case, key, value, jobs):
@@ -234,6 +239,7 @@ def test_another_repeat_runs_it_alone_and_what_compares(finished, case):
     }
     assert set(jobs) == {
         *("repeat_dem", "parse_dumps", "measure_mixing", "compare_mixing", "plot_mixing"),
+        *("discuss_errors", "plot_discussion"),
         *("write_table", "write_provenance"),
     }
 
@@ -333,7 +339,7 @@ def used_names(script: Path, kind: str) -> set[str]:
 
 def test_every_script_has_the_name_of_its_rule(rules):
     without_own_name = {"build_solver", "write_parameters", "run_dem", "repeat_dem"}
-    assert set(rules) == (ALL | SCORES | {"validate_bed"}) - without_own_name
+    assert set(rules) == (ALL | SCORES | {"validate_bed", "write_agreement"}) - without_own_name
     for name, rule in rules.items():
         assert rule.script == f"scripts/{name}.py"
 

@@ -220,9 +220,26 @@ def windows_lie_in_time(
         yield "comparison.start_s", wrong, f"take at least {learn_end:g}, or an earlier learning.end_s"
 
 
-@reads("comparison.repeats", "comparison.start_s", "time.segment_s")
-def repeats_start_at_a_segment(repeats: int, start: float, segment: float) -> Iterator[Finding]:
-    """Refuse repeats that would start within a segment: the state is kept at its end only."""
+@reads("discussion.cell_sizes_m", "particles.diameter_m")
+def cells_of_the_discussion_hold_particles(sizes: list[float], diameter: float) -> Iterator[Finding]:
+    """Refuse cells smaller than a particle."""
+    for size in sizes:
+        if size < diameter:
+            wrong = f"{size:g} m is smaller than a particle ({diameter:g} m)"
+            yield "discussion.cell_sizes_m", wrong, f"take at least {diameter:g}"
+
+
+@reads("comparison.repeats", "comparison.start_s", "time.segment_s", "gas.model")
+def repeats_start_at_a_segment(
+    repeats: int, start: float, segment: float, gas_model: str
+) -> Iterator[Finding]:
+    """Refuse repeats without gas, or from within a segment: the state is kept at its end only."""
+    if repeats and gas_model == "none":
+        yield (
+            "comparison.repeats",
+            f"{repeats} repeats of a scene without gas",
+            "take 0: only beds are repeated",
+        )
     if repeats and not is_multiple(start, segment):
         wrong = f"{repeats} repeats cannot start at comparison.start_s ({start:g} s), within a segment"
         yield "comparison.repeats", wrong, f"take a time.segment_s that divides {start:g}, or 0 repeats"

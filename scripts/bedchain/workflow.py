@@ -85,6 +85,12 @@ def reference_or_exit(wanted: str | None, name: str, case: Case) -> Path | None:
     return folder
 
 
+def cell_size(case: Case) -> float:
+    """Side of a square as large as a cell of a case [m]."""
+    bed, cells = case["bed"], case["cells"]
+    return float((bed["width_m"] * bed["height_m"] / (cells["columns"] * cells["rows"])) ** 0.5)
+
+
 def pick(case: Case, *keys: str) -> dict[str, Any]:
     """The values of dotted keys by their last name, or of a whole section: ``params: **pick(CASE, "cells")``.
 

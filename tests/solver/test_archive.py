@@ -16,10 +16,12 @@ from bedchain.case import load_case, load_schema
 from bedchain.errors import UserError
 from bedchain.gas_field import gas_near
 from bedchain.trajectory import open_trajectory, read_manifest
+from check_reference import check_reference
 from measure_mixing import measure_mixing
-from pack_reference import finished_manifest, pack_reference
+from pack_reference import check_parameters, finished_manifest, pack_reference
 from parse_dumps import parse_dumps
 from unpack_reference import unpack_reference
+from write_parameters import write_parameters
 
 NUMBER, CELL, LEVEL = 600, 0.01, 1e-3
 TIMES = np.round(np.arange(0, 2 + 1e-9, 0.025), 6)
@@ -48,6 +50,7 @@ def archived(tmp_path_factory):
     results = root / "results"
     results.mkdir()
     (root / "case.yaml").write_text(yaml.safe_dump(CASE))
+    write_parameters(root / "case.yaml", results)
     frames = rolling_bed(NUMBER, WIDTH, 0.12, TIMES)
     dem = write_run(results, frames, TIMES, WIDTH, HEIGHT)
     write_series(results, np.arange(0, 2, 5e-3), 800.0, 0.06, NUMBER)
@@ -126,6 +129,21 @@ def test_gas_comes_back_at_the_nearest_moment(archived, tmp_path):
     )
     assert gas.mesh.n_cells == COLUMNS * ROWS
     assert np.unique(np.load(tmp_path / "gas.npz")["u_z"]).tolist() == [2.0]
+
+
+def test_a_bed_simulated_again_is_compared_frame_by_frame(archived, tmp_path):
+    paths = [archived / "results" / name for name in ("trajectory.npy", "trajectory.json")]
+    table = check_reference(archived / "reference", *paths)
+    assert len(table) == len(TIMES) - START and (table["same_share_1"] == 1).all()
+    np.testing.assert_allclose(table["simulated_height_m"], table["archived_height_m"], atol=LEVEL / 10)
+    other = np.load(paths[0])
+    other[50:, 1, : NUMBER // 2] += 2 * LEVEL
+    np.save(tmp_path / "other.npy", other)
+    table = check_reference(archived / "reference", tmp_path / "other.npy", paths[1])
+    same = table["same_share_1"].to_numpy()
+    assert (same[: 50 - START] == 1).all() and same[50 - START :] == pytest.approx(0.5)
+    late = table["simulated_height_m"] - table["archived_height_m"]
+    assert late.iloc[-1] == pytest.approx(LEVEL, rel=0.1)
 
 
 def test_provenance_names_code_case_versions_and_seeds(archived):
@@ -217,6 +235,15 @@ def test_a_half_simulated_bed_is_not_archived(archived, tmp_path):
     shutil.copy(archived / "results" / "dem.json", results / "dem.json")
     with pytest.raises(UserError, match=r"repeats/1/mixing.csv is missing"):
         finished_manifest(results, case)
+
+
+def test_a_case_that_was_edited_after_the_simulation_is_not_archived(archived, tmp_path):
+    case = changed(archived, tmp_path, "contact", friction_1=0.2)
+    with pytest.raises(UserError, match=r"contact.friction_1 is 0.2 and was 0.1; simulate it again"):
+        check_parameters(archived / "results", case, load_schema())
+    case = changed(archived, tmp_path, "gas", cell_size_m=0.005)
+    with pytest.raises(UserError, match=r"bed.width_m / gas.cell_size_m is 16 and was 8"):
+        check_parameters(archived / "results", case, load_schema())
 
 
 def test_an_archive_with_frames_left_out_is_refused(archived, tmp_path):
