@@ -17,6 +17,7 @@ from bedchain.stage import stage, write_csv
 
 WINDOW = "starts"
 PANELS = {"radial": "test, left / right", "axial": "test, low / up"}
+STARTS_DASH = (0, (1, 1.5))
 # cells of one case as two tables have them, with the digits of a csv
 SAME = 1e-6
 
@@ -52,6 +53,7 @@ def plot_pareto(
         _draw_validation(panels[0], table[table["panel"] == "validation"], styles)
         for axes, (panel, title) in zip(panels[1:], PANELS.items(), strict=True):
             _draw_test(axes, table[table["panel"] == panel], styles)
+            axes.axhline(_spread_of_starts(scores, panel), color=LINE_COLOUR, lw=0.9, ls=STARTS_DASH)
             axes.set_title(title, loc="left")
         for axes in panels:
             axes.set(xscale="log")
@@ -62,7 +64,7 @@ def plot_pareto(
         panels[0].set_ylabel("rms error of the share [1]")
         panels[0].set_ylim(bottom=0)
         shown = [name for name in styles if (table["source"] == name).any()]
-        figure.legend(handles=_legend(shown, styles), loc="outside upper center", ncols=4, handlelength=1.5)
+        figure.legend(handles=_legend(shown, styles), loc="outside upper center", ncols=4, handlelength=2.0)
         save_figure(figure, png, pdf, resolution_dpi)
     write_csv(table, csv)
 
@@ -138,6 +140,13 @@ def _draw_test(axes: Axes, table: pd.DataFrame, styles: dict[str, ModelStyle]) -
         axes.vlines(row.cost_s, row.ci_low_1, row.ci_high_1, color=style.colour, lw=0.8)
 
 
+def _spread_of_starts(scores: Path, panel: str) -> float:
+    """What a model that knows nothing of the bubbles at the start errs by at least [1]."""
+    table = pd.read_csv(scores)
+    rows = table[(table["quantity"] == f"spread_of_starts_{panel}") & table["time_s"].isna()]
+    return float(rows["value"].mean())
+
+
 def _legend(shown: list[str], styles: dict[str, ModelStyle]) -> list[Line2D]:
     handles = [
         Line2D([], [], ls="none", marker=styles[name].marker, color=styles[name].colour, label=label(name),
@@ -145,6 +154,7 @@ def _legend(shown: list[str], styles: dict[str, ModelStyle]) -> list[Line2D]:
         for name in shown
     ]  # fmt: skip
     handles.append(Line2D([], [], color=LINE_COLOUR, ls=(0, (6, 2)), label="noise floor of the DEM"))
+    handles.append(Line2D([], [], color=LINE_COLOUR, ls=STARTS_DASH, label="spread between starts"))
     chosen = Line2D([], [], ls="none", marker="o", ms=6, mfc="none", mec="black", label="black edge: chosen")
     return [*handles, chosen]
 

@@ -80,8 +80,8 @@ CLASSES = ({"classes": [1, 1]}, {"classes": [3, 3]}, {"classes": [5, 5]}, {"clas
 # a displacement to carry the velocity, and its pairs become too many to learn from at long lags.
 # The recurrence chain does not use the cells; its two baselines compete as models of their own.
 SETTINGS: dict[str, tuple[Settings, ...]] = {
-    "dynamic": (Settings((0.25,), (1, 2)), Settings((0.5, 1), (1, 2, 4))),
-    # Fine cells by many classes take more than a gigabyte on the paper's bed.
+    # Finer cells here, and fine cells by many classes, take more than a gigabyte on the paper's bed.
+    "dynamic": (Settings((0.5, 1), (1, 2, 4)),),
     "velocity_class": (
         Settings((0.5,), (1, 2), CLASSES[1:2]),
         Settings((1, 2), (1, 2, 4), CLASSES[1:]),

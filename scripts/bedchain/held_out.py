@@ -90,6 +90,13 @@ class HeldOut:
         """What the curves differ by from those they repeat; see `scores.deviations`."""
         return deviations(self.curves, self._group())
 
+    def deviations_of_starts(self) -> Array:
+        """What the curves differ by from those of other starts in their run: the state at the start, too.
+
+        A model that knows the mean of all states, but not the bubbles that there are, errs by as much.
+        """
+        return deviations(self.curves, self.run)
+
     def batch_distances(self) -> Array:
         """Total variation of each batch from the mean of those it repeats, (n_starts, n_moments, 1) [1]."""
         return distances(self.densities, mean_of_others(self.densities, self._group()))

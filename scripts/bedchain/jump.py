@@ -89,13 +89,11 @@ class JumpChain(TracerChain):
     def arrays(self) -> dict[str, NDArray[Any]]:
         """See `models.Chain.arrays`."""
         grid = self.grid
-        return {
+        return self.classes.arrays() | {
             "bed_m": np.array([grid.width_m, grid.height_m]),
             "grid": np.array([grid.columns, grid.rows]),
             "step": np.array([self.lag, self.fewest_samples]),
             "lag_s": np.array(self.lag_s),
-            "edges_x": self.classes.edges_x_m_s,
-            "edges_z": self.classes.edges_z_m_s,
             "dx_m": self.samples[0],
             "dz_m": self.samples[1],
             "later": self.samples[2],
@@ -120,7 +118,7 @@ class JumpChain(TracerChain):
                 lag,
                 float(arrays["lag_s"]),
                 json.loads(str(arrays["report"])),
-                VelocityClasses(arrays["edges_x"], arrays["edges_z"]),
+                VelocityClasses.from_arrays(arrays),
                 (arrays["dx_m"], arrays["dz_m"], arrays["later"]),
                 arrays["first"],
                 fewest,

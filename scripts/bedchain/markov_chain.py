@@ -70,11 +70,16 @@ class MarkovChain:
         return self.grid.n_cells * (1 if self.classes is None else self.classes.number)
 
     def symbols(self, frames: Frames) -> NDArray[np.int32]:
-        """What each particle shows in each frame, (n_frames, n_particles)."""
+        """What each particle shows in each frame from number ``back`` on, (n_frames - back, n_particles)."""
         cells = np.asarray(frames.cells)
-        return (
-            cells if self.classes is None else cells * np.int32(self.classes.number) + self.classes.of(frames)
-        )
+        if self.classes is None:
+            return cells
+        return np.asarray(cells[self.back :] * np.int32(self.classes.number) + self.classes.of(frames))
+
+    @property
+    def back(self) -> int:
+        """Frames that must lead up to one for what its particles show [1]."""
+        return 0 if self.classes is None else self.classes.back
 
     def states(self, start: Frames) -> NDArray[np.int32]:
         """State of each particle in the last frame, (n_particles,).
@@ -84,7 +89,8 @@ class MarkovChain:
         DataError
             Fewer frames lead up to the start than a state needs.
         """
-        needed = (self.history - 1) * self.lag + 1
+        shown = (self.history - 1) * self.lag + 1
+        needed = shown + self.back
         if len(start.times_s) < needed:
             raise DataError(
                 f"the {self.name} chain starts from {needed} frames, {len(start.times_s)} given: "
@@ -92,7 +98,7 @@ class MarkovChain:
             )
         # A frame more, if there is one: differences of positions may stand for velocities.
         first = max(0, len(start.times_s) - needed - 1)
-        return self.states_of(self.symbols(start.part(slice(first, None)))[-needed :: self.lag])
+        return self.states_of(self.symbols(start.part(slice(first, None)))[-shown :: self.lag])
 
     def states_of(self, symbols: NDArray[np.int32]) -> NDArray[np.int32]:
         """State of each particle from its symbols, (history, n_particles), oldest first; (n_particles,)."""
@@ -175,7 +181,7 @@ class MarkovChain:
     def arrays(self) -> dict[str, NDArray[Any]]:
         """See `models.Chain.arrays`."""
         grid, classes = self.grid, self.classes
-        edges = {} if classes is None else {"edges_x": classes.edges_x_m_s, "edges_z": classes.edges_z_m_s}
+        edges = {} if classes is None else classes.arrays()
         return edges | {
             "bed_m": np.array([grid.width_m, grid.height_m]),
             "grid": np.array([grid.columns, grid.rows]),
@@ -203,7 +209,7 @@ class MarkovChain:
             columns, rows = (int(count) for count in arrays["grid"])
             lag, history, fallback = (int(number) for number in arrays["step"])
             n_states = arrays["indptr"].size - 1
-            classes = VelocityClasses(arrays["edges_x"], arrays["edges_z"]) if "edges_x" in arrays else None
+            classes = VelocityClasses.from_arrays(arrays) if "edges_x" in arrays else None
             matrix = sparse.csr_array(
                 (arrays["data"], arrays["indices"], arrays["indptr"]), shape=(n_states, n_states)
             )

@@ -131,11 +131,11 @@ def count_starts(frames: Frames, chain: MarkovChain, sides: Sides) -> Starts:
         Frames that too few others lead up to hold no particles.
     """
     lag, history, base = chain.lag, chain.history, chain.n_symbols
-    n_starts, before = len(frames.times_s) - lag, (history - 1) * lag
-    shown = chain.symbols(frames)
+    n_starts, span = len(frames.times_s) - lag, (history - 1) * lag
+    before, shown = span + chain.back, chain.symbols(frames)
     keys = np.zeros((n_starts - before, shown.shape[1]), np.int64)
-    for back in range(before, -1, -lag):
-        keys = keys * base + shown[before - back : n_starts - back]
+    for ago in range(span, -1, -lag):
+        keys = keys * base + shown[span - ago : n_starts - chain.back - ago]
     pasts, which = np.unique(keys, return_inverse=True)
     place = (np.repeat(np.arange(before, n_starts), keys.shape[1]), which.ravel())
     number = []
@@ -143,7 +143,7 @@ def count_starts(frames: Frames, chain: MarkovChain, sides: Sides) -> Starts:
         there = sides.marked[before:n_starts, group].ravel()
         once = (np.ones(there.sum(), np.int64), (place[0][there], place[1][there]))
         number.append(sparse.csr_array(sparse.coo_array(once, shape=(n_starts, pasts.size))))
-    symbols = np.array([pasts // base**back % base for back in range(history)][::-1], np.int32)
+    symbols = np.array([pasts // base**ago % base for ago in range(history)][::-1], np.int32)
     return Starts(symbols, tuple(number))
 
 

@@ -88,17 +88,22 @@ def score_rows(trial: Trial, held: HeldOut) -> list[Row]:
 def dem_rows(held: HeldOut, lagrangian: list[Statistics]) -> list[Row]:
     """What the scores are to be held against: the noise floor itself, and the DEM's own fluctuations."""
     rows = [row("repeats", len(held.runs) - 1), row("starts", len(held.starts))]
+    rows += spread_rows("spread_of_starts", held.deviations_of_starts(), held, "starts")
     for window in held.windows():
-        which = held.floor_of(window)
-        spread = held.deviations()[which, 1:]
-        weights = held.weights(which)
-        for side, columns in SIDES.items():
-            part = spread[:, :, columns]
-            for time_s, picked in at_times(part, held.interval_s):
-                rows.append(row(f"spread_{side}", float(rms(picked)), time_s, window=window,
-                                ci=interval(rms, picked, weights)))  # fmt: skip
+        rows += spread_rows("spread", held.deviations(), held, window)
         rows += fluctuation_rows(held.curves, held, window, held.windows()[window])
     return rows + lagrangian_rows(lagrangian, lagrangian)
+
+
+def spread_rows(quantity: str, deviations: Array, held: HeldOut, window: str) -> list[Row]:
+    """Size of the DEM's own deviations, at `TIMES_S` and over all frames after the start."""
+    which = held.floor_of(window)
+    weights, rows = held.weights(which), []
+    for side, columns in SIDES.items():
+        for time_s, picked in at_times(deviations[which, 1:][:, :, columns], held.interval_s):
+            ends = interval(rms, picked, weights)
+            rows.append(row(f"{quantity}_{side}", float(rms(picked)), time_s, window=window, ci=ends))
+    return rows
 
 
 def curve_rows(error: Array, held: HeldOut, window: str, which: NDArray[np.bool_]) -> list[Row]:

@@ -3,9 +3,10 @@
 
 A state is a cell times a class of the velocity (vx, vz), classes of equally many particles each over the
 whole learning window. Assumed: within a class the velocity does not matter, what was before the present
-velocity does not matter (so correlations decay as powers, and cannot turn negative as those of
-particles that go round may), and positions are even in a cell. States with few samples move as any particle
-of their cell does, whatever its velocity, so that the matrix stays sparse and conservative.
+velocity does not matter, and positions are even in a cell. Where particles soon turn back, as between the
+bubbles of a narrow bed, the second makes them mix too fast: with ``earlier_s`` the class of the velocity so
+long ago is part of the state too. States with few samples move as any particle of their cell does, whatever
+its velocity, so that the matrix stays sparse and conservative.
 """
 
 from collections.abc import Callable, Sequence
@@ -17,7 +18,7 @@ from scipy import sparse
 
 from bedchain.counting import Counts, count_moves, step_starts
 from bedchain.estimators import leak, open_classes, transition_matrix
-from bedchain.frames import DataError, Frames
+from bedchain.frames import DataError, Frames, lag_frames
 from bedchain.grid import Grid
 from bedchain.markov_chain import MarkovChain
 from bedchain.velocity import VelocityClasses, measured, quantile_classes
@@ -35,6 +36,7 @@ def learn(
     step_weights: NDArray[np.int64] | None = None,
     classes: Sequence[int] = CLASSES,
     fewest_samples: int = FEWEST_SAMPLES,
+    earlier_s: float = 0.0,
 ) -> MarkovChain:
     """Velocity-class chain from a window of frames.
 
@@ -46,13 +48,15 @@ def learn(
         Classes of the velocity along x and z [1].
     fewest_samples : int
         States seen less often than this move as any particle of their cell does [1].
+    earlier_s : float
+        The class of the velocity so long ago counts too, a multiple of the frame interval [s]; 0 for none.
 
     Returns
     -------
     MarkovChain
     """
     _, weights = step_starts(frames.cells, lag, step_weights=step_weights)
-    return relearner(frames, grid, lag, estimator, classes, fewest_samples)(weights)
+    return relearner(frames, grid, lag, estimator, classes, fewest_samples, earlier_s)(weights)
 
 
 def relearner(
@@ -62,14 +66,21 @@ def relearner(
     estimator: str = "pooled",
     classes: Sequence[int] = CLASSES,
     fewest_samples: int = FEWEST_SAMPLES,
+    earlier_s: float = 0.0,
 ) -> Callable[[NDArray[np.int64]], MarkovChain]:
     """`learn` as a function of ``step_weights`` that knows all states already; arguments as `learn`."""
-    edges, states = _states(frames, grid, classes)
+    back = lag_frames(earlier_s, frames.interval_s) if earlier_s else 0
+    if len(frames.times_s) - lag <= back:
+        raise DataError(
+            f"{len(frames.times_s)} frames hold no step of {lag} frames after {back}: "
+            "widen the window or cut earlier_s"
+        )
+    edges, states = _states(frames, grid, classes, back)
     n_states, lag_s = grid.n_cells * edges.number, lag * frames.interval_s
     note = {"velocities_from_differences_1": float(not measured(frames))}
 
     def again(weights: NDArray[np.int64]) -> MarkovChain:
-        counts = count_moves(states, n_states, lag, step_weights=weights)
+        counts = count_moves(states, n_states, lag, step_weights=weights[back:])
         chain = from_counts(counts, edges, grid, lag_s, estimator, fewest_samples)
         return replace(chain, report=chain.report | note)
 
@@ -144,13 +155,15 @@ def from_counts(
     )
 
 
-def _states(frames: Frames, grid: Grid, classes: Sequence[int]) -> tuple[VelocityClasses, NDArray[np.int32]]:
-    """Classes of a window, and the state of each particle in each frame."""
-    edges = quantile_classes(frames, classes)
+def _states(
+    frames: Frames, grid: Grid, classes: Sequence[int], back: int
+) -> tuple[VelocityClasses, NDArray[np.int32]]:
+    """Classes of a window, and the state of each particle in each frame that ``back`` lead up to."""
+    edges = quantile_classes(frames, classes, back)
     if grid.n_cells * edges.number > np.iinfo(np.int32).max:
         raise DataError(f"{grid.n_cells} cells by {edges.number} classes: state numbers must fit in int32")
     states = edges.of(frames)
-    for now, cells in zip(states, frames.cells, strict=True):
+    for now, cells in zip(states, frames.cells[back:], strict=True):
         now += np.int32(edges.number) * np.asarray(cells)
     return edges, states
 

@@ -125,6 +125,8 @@ def test_noise_floor_is_that_of_independent_particles(table):
     # half of the particles are marked, and about half of them are left after long: binomial
     floor = score(table, "error_rms_mixing", "velocity_class", "start")["noise_floor"]
     assert 0.3 < floor / np.sqrt(0.25 / (NUMBER / 2)) < 1.5
+    # walkers are independent: their starts differ by no more than their repeats do
+    assert score(table, "spread_of_starts_mixing", "dem", "starts")["value"] == pytest.approx(floor, rel=0.5)
 
 
 def test_identical_repeats_have_no_noise_floor(walkers, tmp_path):

@@ -71,6 +71,17 @@ def test_one_step_of_the_dynamic_chain_is_what_the_frames_show_after_the_first_s
     assert of_model("dynamic", frames, 1, [1], ones) == pytest.approx(seen, abs=ROUND_OFF)
 
 
+@pytest.mark.parametrize("earlier", [0.0, 0.075])
+def test_one_step_of_the_velocity_class_chain_is_what_the_frames_show(earlier):
+    frames, ones = walk_frames(300, 40), np.ones(40, int)
+    back = round(earlier / 0.025)
+    sides = count_sides(frames, *SPLITS, [1])
+    chain = models.learn("velocity_class", frames, GRID, classes=(2, 2), fewest_samples=0, earlier_s=earlier)
+    _, remaining = propagated(chain, count_starts(frames, chain, sides), sides, ones)
+    seen = counted(count_sides(frames.part(slice(back, None)), *SPLITS, [1]))
+    assert remaining == pytest.approx(seen, abs=ROUND_OFF)
+
+
 @pytest.mark.parametrize("name", ["static", "dynamic"])
 def test_weighted_starts_agree_with_a_plain_loop_over_frames(name):
     frames, lag, gaps = walk_frames(60, 20), 2, [2, 6]

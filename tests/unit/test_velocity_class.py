@@ -72,6 +72,30 @@ def test_a_single_frame_without_velocities_is_no_start():
         chain.mixing(frames.part(slice(1, 2)), 0.02, 0.05, 3)
 
 
+def test_an_earlier_velocity_tells_when_particles_turn_back():
+    # two steps right, two steps left, and so on: what comes next is known from this velocity and the last
+    grid, turns = Grid(0.6, 0.01, 60, 1), np.array([1, 1, -1, -1])
+    phase = np.arange(12) + np.repeat(np.arange(4), 20)[:, None]
+    direction = turns[phase % 4].T
+    moves = np.vstack((np.zeros((1, 80), int), direction[1:]))
+    cells = np.tile(np.arange(20, 40), 4) + np.cumsum(moves, axis=0)
+    frames = with_velocities(cells.astype(np.int32), direction, grid)
+    start = frames.part(slice(4, 6))
+    marked = np.eye(80, dtype=bool)[[10]]
+    middle = int(start.cells[-1, 10])
+    spread = {}
+    for earlier in (0.0, 0.025):
+        options = {"classes": (3, 1), "fewest_samples": 0, "earlier_s": earlier}
+        chain = models.learn("velocity_class", frames, grid, **options)
+        density = chain.densities(start, marked, [8])[0, 0]
+        spread[earlier] = density @ (np.arange(60) - middle) ** 2
+    assert spread[0.025] == pytest.approx(0, abs=1e-12) and spread[0.0] > 4
+    with pytest.raises(DataError, match="starts from 2 frames, 1 given"):
+        chain.mixing(start.part(slice(1, 2)), 0.3, 0.005, 2)
+    with pytest.raises(DataError, match="hold no step of 1 frames after 11"):
+        models.learn("velocity_class", frames, grid, earlier_s=0.275)
+
+
 def test_one_class_is_the_static_chain():
     frames, grid = stirred(3)
     for estimator in ESTIMATORS:
