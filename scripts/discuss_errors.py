@@ -33,8 +33,8 @@ def discuss_errors(
     """Learn and run chains of many grids and lags, and measure what theory says of them.
 
     The first of the models is run on every grid with every lag, the others with the case's own lag on every
-    grid that is no finer (theirs take gigabytes) and on its own grid with every lag. Errors are against the mean
-    of all realisations of the DEM.
+    grid that is no finer (theirs take gigabytes) and on its own grid with every lag. Errors are against the
+    mean of all realisations of the DEM.
 
     Parameters
     ----------
