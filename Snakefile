@@ -228,7 +228,7 @@ rule repeat_dem:
     threads: CASE["run"]["ranks"]
     params:
         **pick(CASE, "comparison.start_s", "comparison.end_s", "time.segment_s"),
-        folder=RESULTS,
+        folder=subpath(input.dem, parent=True),
     shell:
         "python scripts/run_dem.py {params.folder} --repeat {wildcards.repeat} --start {params.start_s}"
         " --end {params.end_s} --segment {params.segment_s} --ranks {threads} 2>&1 | tee {log} >&2"
@@ -282,7 +282,8 @@ if REFERENCE:
     rule unpack_reference:
         input:
             modules("archive", "packing", "stage", "trajectory"),
-            archive=source_files(REFERENCE, "*"),
+            source_files(REFERENCE, "*"),
+            provenance=f"{REFERENCE}/provenance.json",
         output:
             **TRAJECTORY,
             **RUN,
@@ -295,7 +296,7 @@ if REFERENCE:
         conda:
             "envs/python.yaml"
         params:
-            folder=str(REFERENCE),
+            folder=subpath(input.provenance, parent=True),
         script:
             "scripts/unpack_reference.py"
 

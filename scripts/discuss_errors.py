@@ -18,8 +18,8 @@ from bedchain.stage import LOG, stage, write_csv
 from bedchain.trajectory import open_trajectory
 
 AXES = ("x", "z")
-# the steps that a chain may have to know of what came before
-HISTORY_LAGS = 4
+# the steps that a chain has to know of what came before: the dynamic one asks for one
+HISTORY_LAGS = 1
 ROUND_OFF = 1e-6
 Row = dict[str, Any]
 
@@ -33,7 +33,8 @@ def discuss_errors(
     """Learn and run chains of many grids and lags, and measure what theory says of them.
 
     The first of the models is run on every grid with every lag, the others with the case's own lag on every
-    grid and on its own grid with every lag. Errors are against the mean of all realisations of the DEM.
+    grid that is no finer (theirs take gigabytes) and on its own grid with every lag. Errors are against the
+    mean of all realisations of the DEM.
 
     Parameters
     ----------
@@ -76,7 +77,8 @@ def discuss_errors(
             found += spreading_rows(known, grid, lag)
             steps = lengths[1] // lag
             for name in names:
-                if name == names[0] or own_grid == grid or own_lag == lag:
+                coarser = grid.n_cells <= own_grid.n_cells
+                if name == names[0] or own_grid == grid or (own_lag == lag and coarser):
                     chain = models.learn(name, known, grid, lag, estimator)
                     remaining = chain.mixing(start, split_x_m, split_z_m, steps)
                     found += error_rows(name, grid, chain.lag_s, remaining, curves.mean(axis=0)[::lag])
@@ -92,7 +94,9 @@ def is_whole(number: float) -> bool:
 def in_cells(store: np.ndarray, times_s: np.ndarray, grid: Grid, part: slice) -> Frames:
     """Frames of a part of the trajectory on a grid."""
     x, z, vx, vz = (store[part, row] for row in range(4))
-    return Frames(times_s[part], x, z, grid.cell_of(x, z), vx, vz)
+    # one frame after the other: all at once would take several times the memory
+    cells = np.stack([grid.cell_of(*places) for places in zip(x, z, strict=True)])
+    return Frames(times_s[part], x, z, cells, vx, vz)
 
 
 def realisations(table: pd.DataFrame, n_times: int) -> np.ndarray:
