@@ -12,7 +12,7 @@ from tqdm import tqdm
 
 from bedchain.dumps import frame_of, read_dump
 from bedchain.errors import UserError
-from bedchain.stage import complete, write_npy_header
+from bedchain.stage import LOG, complete, write_npy_header
 
 STORED = ("x", "z", "vx", "vz")
 # frames are multiples of the DEM step; their times differ from the grid by round-off only
@@ -72,6 +72,7 @@ def write_trajectory(
         Folder that the frames' files are relative to.
     target : Path
         File to make: float32 (n_frames, 4, n_particles), rows x, z [m], vx, vz [m/s], particles by id.
+        Velocities that the frames lack are NaN.
     bounds : dict of str to float
         Width and height of the bed, ``{"x": 0.27, "z": 1.05}`` [m].
     progress : bool
@@ -86,14 +87,25 @@ def write_trajectory(
     shape = (len(frames), len(STORED), number)
     _check_disk(target, 4 * int(np.prod(shape)))
     ids: np.ndarray | None = None
-    rows = [manifest["columns"].index(name) for name in STORED]
+    columns = manifest["columns"]
+    held = [row for row, name in enumerate(STORED) if name in columns]
+    rows = [columns.index(STORED[row]) for row in held]
+    if len(held) < len(STORED):
+        absent = ", ".join(name for name in STORED if name not in columns)
+        if {"x", "z"} & set(absent.split(", ")):
+            raise UserError(
+                f"dem.json: the frames hold no {absent}, only {', '.join(columns)}; dump them too"
+            )
+        LOG.warning("the frames hold no %s: differences of positions take their place", absent)
     # a plain stream: the pages of a memory map would stay in memory until the end
     with complete(target) as temporary, temporary.open("wb") as stream:
         write_npy_header(stream, shape, np.dtype(np.float32))
         for index in tqdm(range(len(frames)), desc="parse_dumps", unit="frame", disable=not progress):
             frame = _read_frame(manifest, index, folder, ids, bounds)
             ids = frame[manifest["columns"].index("id")].astype(np.int64) if ids is None else ids
-            stream.write(frame[rows].astype(np.float32).tobytes())
+            values = np.full(shape[1:], np.nan, np.float32)
+            values[held] = frame[rows]
+            stream.write(values.tobytes())
     assert ids is not None
     return ids
 

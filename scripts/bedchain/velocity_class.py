@@ -5,8 +5,9 @@ A state is a cell times a class of the velocity (vx, vz), classes of equally man
 whole learning window. Assumed: within a class the velocity does not matter, what was before the present
 velocity does not matter, and positions are even in a cell. Where particles soon turn back, as between the
 bubbles of a narrow bed, the second makes them mix too fast: with ``earlier_s`` the class of the velocity so
-long ago is part of the state too. States with few samples move as any particle of their cell does, whatever
-its velocity, so that the matrix stays sparse and conservative.
+long ago is part of the state too, at the price of as many more states (3 x 3 classes twice are 81). States
+with few samples move as any particle of their cell does, whatever its velocity, so that the matrix stays
+sparse and conservative.
 """
 
 from collections.abc import Callable, Sequence

@@ -5,9 +5,13 @@ import json
 
 import numpy as np
 import pytest
+import synthetic_bed
 from synthetic_bed import rolling_bed, write_run
 
+from assign_cells import assign_cells
+from bedchain import models
 from bedchain.errors import UserError
+from build_transitions import build_transitions
 from parse_dumps import parse_dumps
 
 WIDTH, HEIGHT = 0.08, 0.20
@@ -37,6 +41,26 @@ def changed(dem, change):
 
 def nothing_left(folder):
     return not [path for path in folder.rglob("*") if "a.npy" in path.name or "a.json" in path.name]
+
+
+@pytest.mark.parametrize("form", ["binary", "text"])
+def test_velocities_that_the_frames_lack_are_said_and_left_open(tmp_path, form, monkeypatch, caplog):
+    frames = rolling_bed(200, WIDTH, 0.1, TIMES)
+    monkeypatch.setattr(synthetic_bed, "COLUMNS", ["id", "x", "z"])
+    dem = write_run(tmp_path, frames[:, :2], TIMES, WIDTH, HEIGHT, form=form)
+    paths = (tmp_path / "a.npy", tmp_path / "a.json")
+    parse_dumps(dem, *paths, WIDTH, HEIGHT, progress=False)
+    assert "no vx, vz: differences of positions take their place" in caplog.text
+    trajectory = np.load(paths[0])
+    assert np.isnan(trajectory[:, 2:]).all()
+    np.testing.assert_allclose(trajectory[:, :2], frames[:, :2], rtol=TEXT_PRECISION)
+    cells = tmp_path / "cells.npz"
+    assign_cells(*paths, cells, 8, 20, 1e-3)
+    build_transitions(*paths, cells, tmp_path / "t.npz", "velocity_class", "pooled", 0.025, 0.25, 0.75)
+    assert models.load(tmp_path / "t.npz").report["velocities_from_differences_1"] == 1
+    changed(dem, lambda manifest: manifest.update(columns=["id", "x", "y"]))
+    with pytest.raises(UserError, match="the frames hold no z, vx, vz, only id, x, y; dump them too"):
+        parse_dumps(dem, *paths, WIDTH, HEIGHT, progress=False)
 
 
 def test_trajectory_is_what_was_simulated(run, tmp_path):
