@@ -70,7 +70,7 @@ def write_text_dump(path, step, table, box):
         "ITEM: BOX BOUNDS ff ff ff",
     ]
     lines += [f"{lower:g} {upper:g}" for lower, upper in box]
-    lines += ["ITEM: ATOMS id x z vx vz "]
+    lines += [f"ITEM: ATOMS {' '.join(COLUMNS)} "]
     lines += [f"{row[0]:.0f} " + " ".join(f"{value:g}" for value in row[1:]) + " " for row in table]
     path.write_text("\n".join(lines) + "\n")
 

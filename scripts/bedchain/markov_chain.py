@@ -24,7 +24,7 @@ class MarkovChain:
     A state is found from what a particle shows in the last frames before the start: its symbol in each of
     ``history`` frames, one lag apart, oldest first, read as one number in base ``n_symbols`` (its key). The
     symbol is the cell or, with velocity classes, cell * classes + class. Keys that no state has fall back on
-    the state numbered ``fallback + symbol``.
+    the state numbered ``fallback + cell``.
 
     Parameters
     ----------
@@ -45,7 +45,7 @@ class MarkovChain:
     state_keys : (n_keyed,) int64 array
         Rising keys of the first ``n_keyed`` states.
     fallback : int
-        First of the ``n_symbols`` states for particles of unknown past.
+        First of the ``n_cells`` states for particles of which too little is known.
     report : dict of str to float
         What learning found.
     classes : VelocityClasses, optional
@@ -105,7 +105,7 @@ class MarkovChain:
         keys = np.zeros(symbols.shape[1], np.int64)
         for now in symbols:
             keys = keys * self.n_symbols + now
-        unknown = self.fallback + symbols[-1]
+        unknown = self.fallback + symbols[-1] // np.int32(self.n_symbols // self.grid.n_cells)
         if self.state_keys.size == 0:
             return unknown.astype(np.int32)
         place = np.minimum(np.searchsorted(self.state_keys, keys), self.state_keys.size - 1)

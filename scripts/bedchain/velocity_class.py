@@ -5,8 +5,9 @@ A state is a cell times a class of the velocity (vx, vz), classes of equally man
 whole learning window. Assumed: within a class the velocity does not matter, what was before the present
 velocity does not matter, and positions are even in a cell. Where particles soon turn back, as between the
 bubbles of a narrow bed, the second makes them mix too fast: with ``earlier_s`` the class of the velocity so
-long ago is part of the state too. States with few samples move as any particle of their cell does, whatever
-its velocity, so that the matrix stays sparse and conservative.
+long ago is part of the state too, at the price of as many more states (3 x 3 classes twice are 81). States
+with few samples move as any particle of their cell does, whatever its velocity, so that the matrix stays
+sparse and conservative.
 """
 
 from collections.abc import Callable, Sequence
@@ -109,13 +110,14 @@ def from_counts(
     estimator : {"literal", "per_step", "pooled"}
         How counts become probabilities, but for the rows of whole cells, which are pooled.
     fewest_samples : int
-        States with fewer samples get the row of their cell [1].
+        States with fewer samples are one state with the others of their cell [1].
 
     Returns
     -------
     MarkovChain
-        Its report holds how many of the visited states had fewer samples, and which share of all moves began
-        in one of them: these fall back on the row of their cell.
+        Its states are those with enough samples, and after them one for each cell, which moves as all of the
+        cell's particles do: thin states, all with that row, need not be told apart. Its report holds how many
+        of the visited states were thin, and which share of all moves began in one of them: what falls back.
 
     Raises
     ------
@@ -127,31 +129,35 @@ def from_counts(
         raise DataError(
             f"counts of {counts.moves.shape[0]} states, {n_states} (cells times classes) expected"
         )
-    cell_of_state = np.repeat(np.arange(grid.n_cells, dtype=np.int32), classes.number)
+    cell = np.arange(n_states, dtype=np.int32) // np.int32(classes.number)
     visits = counts.visits
-    fills = np.bincount(cell_of_state, visits, grid.n_cells)[cell_of_state] > 0
-    thin = (visits < fewest_samples) & fills
-    of_cells = _rows_of_cells(counts.moves, cell_of_state, grid.n_cells)
-    moves = _replaced(counts.moves, of_cells, cell_of_state, thin)
-    total = np.maximum(of_cells.sum(axis=1), 1)
-    of_cells = sparse.csr_array(sparse.diags_array(1.0 / total) @ of_cells)
-    matrix = _replaced(transition_matrix(counts, estimator, False), of_cells, cell_of_state, thin)
-    returned = np.zeros(0, np.int64)
+    kept = np.flatnonzero(visits >= max(fewest_samples, 1)).astype(np.int64)
+    place = kept.size + cell.astype(np.int64)
+    place[kept] = np.arange(kept.size)
+    onto = _ones(np.arange(n_states), place, (n_states, kept.size + grid.n_cells))
+    of_cells = _ones(cell, np.arange(n_states), (grid.n_cells, n_states)) @ counts.moves @ onto
+    shares = (transition_matrix(counts, estimator, False)[kept] @ onto, _shares(of_cells, kept.size))
+    matrix, returned = sparse.csr_array(sparse.vstack(shares, format="csr")), np.zeros(0, np.int64)
     if estimator != "literal":
+        # Each move once: those of thin states in the rows of their cells.
+        moves = sparse.csr_array(onto.T @ counts.moves @ onto)
         matrix, returned = open_classes(matrix, replace(counts, moves=moves))
-    seen = visits > 0
+    index = (matrix.indices.astype(np.int32), matrix.indptr.astype(np.int32))
+    matrix = sparse.csr_array((matrix.data, *index), shape=matrix.shape)
+    matrix.sort_indices()
+    seen = float((visits > 0).sum())
     report = {
-        "states_1": float(seen.sum()),
-        "thin_state_share_1": float((thin & seen).sum() / seen.sum()),
-        "fallback_share_1": float(visits[thin].sum() / visits.sum()),
+        "states_1": seen,
+        "thin_state_share_1": 1 - kept.size / seen,
+        "fallback_share_1": 1 - float(visits[kept].sum() / visits.sum()),
         "leak_1": leak(counts) if estimator == "literal" else 0.0,
         "states_returned_1": float(returned.size),
         "moves_1": float(visits.sum()),
         "entries_1": float(matrix.nnz),
     }
-    none = np.zeros(0, np.int64)
+    cells = np.concatenate((cell[kept], np.arange(grid.n_cells, dtype=np.int32)))
     return MarkovChain(
-        "velocity_class", grid, counts.lag, lag_s, matrix, cell_of_state, 1, none, 0, report, classes
+        "velocity_class", grid, counts.lag, lag_s, matrix, cells, 1, kept, kept.size, report, classes
     )
 
 
@@ -168,22 +174,16 @@ def _states(
     return edges, states
 
 
-def _rows_of_cells(
-    moves: sparse.csr_array, cell_of_state: NDArray[np.int32], n_cells: int
+def _ones(
+    rows: NDArray[np.integer], columns: NDArray[np.integer], shape: tuple[int, int]
 ) -> sparse.csr_array:
-    """Moves of the states of each cell together, (n_cells, n_states)."""
-    n_states = cell_of_state.size
-    index = (cell_of_state, np.arange(n_states))
-    together = sparse.csr_array((np.ones(n_states, moves.dtype), index), shape=(n_cells, n_states))
-    return sparse.csr_array(together @ moves)
+    """Matrix of ones at some places, which adds up the states that share a row or a column."""
+    return sparse.csr_array(sparse.coo_array((np.ones(rows.size, np.int64), (rows, columns)), shape=shape))
 
 
-def _replaced(
-    rows: sparse.csr_array,
-    of_cells: sparse.csr_array,
-    cell_of_state: NDArray[np.int32],
-    thin: NDArray[np.bool_],
-) -> sparse.csr_array:
-    """Rows of states, those of thin ones replaced by the rows of their cells."""
-    source = np.where(thin, thin.size + cell_of_state, np.arange(thin.size))
-    return sparse.csr_array(sparse.csr_array(sparse.vstack((rows, of_cells), format="csr"))[source])
+def _shares(moves: sparse.csr_array, first: int) -> sparse.csr_array:
+    """Shares of the moves of each cell; one never left stays in its own state, number ``first + cell``."""
+    total = np.asarray(moves.sum(axis=1)).ravel()
+    never = np.flatnonzero(total == 0)
+    stay = sparse.coo_array((np.ones(never.size), (never, first + never)), shape=moves.shape)
+    return sparse.csr_array(sparse.diags_array(1.0 / np.maximum(total, 1)) @ moves + stay)
