@@ -2,24 +2,34 @@
 # The whole pipeline of one case, in its order: particles and gas, cells, chains, comparison, figures.
 #   snakemake --cores 2                        the case `short`
 #   snakemake --cores 2 --config case=paper    another case of cases/
+#   ... reference=simulate                     not from the archive cases/<case>/reference/, but by the solvers
 # A rule gets only the keys of the case that it needs: what a changed key does not touch does not run again.
 import sys
 
 sys.path.insert(0, f"{workflow.basedir}/scripts")
 
 from bedchain.parameters import weight_per_area
-from bedchain.workflow import case_or_exit, modules, pick, solver_values, source_files, table_values
+from bedchain.workflow import case_or_exit, cell_size, modules, pick, reference_or_exit
+from bedchain.workflow import solver_values, source_files, table_values
 
 NAME = config.get("case", "short")
 CASE = case_or_exit(NAME)
+REFERENCE = reference_or_exit(config.get("reference"), NAME, CASE)
 RESULTS = f"results/{NAME}"
 FIGURES = f"results/{NAME}/figures"
 LOGS = f"logs/{NAME}"
 BENCHMARKS = f"benchmarks/{NAME}"
 MODELS = CASE["chain"]["models"]
+REPEATS = range(1, CASE["comparison"]["repeats"] + 1)
 OPTIONS = {model: CASE["chain"].get(model, {}) for model in MODELS}
 FORMS = {form: f".{form}" for form in ["png", "pdf", "csv"]}
+# the bed that all is made of, simulated or out of its archive
+RUN = {"dem": f"{RESULTS}/dem.json", "bed_series": f"{RESULTS}/bed_series.csv"}
 TRAJECTORY = {"trajectory": f"{RESULTS}/trajectory.npy", "metadata": f"{RESULTS}/trajectory.json"}
+CHAIN_FILES = {"best": "scores_best"}
+GAS = CASE["gas"]["model"] != "none"  # without it nothing of OpenFOAM is built or run
+DRUM = "liggghts_inputs/drum"
+AUDITED = ["bed", "particles", "contact", "gas", "drum"]
 MODEL_FIGURES = {"static": "fig3_static", "dynamic": "fig4_dynamic"}
 PLOTS = [
     "fig1_cells",
@@ -27,25 +37,32 @@ PLOTS = [
     *(MODEL_FIGURES[model] for model in MODELS if model in MODEL_FIGURES),
     "fig5a_radial",
     "fig5b_axial",
-    "snapshot",
+    *(["snapshot"] if GAS else []),
     *(["fig_difference"] if {*MODEL_FIGURES} <= {*MODELS} else []),
     "fig_chapman_kolmogorov",
     "fig_timescales",
+    "fig_stationarity",
+    *(["fig_discussion"] if {*MODEL_FIGURES} & {*MODELS} else []),
 ]
+SCORE_PLOTS = ["fig_pareto", "fig5_best", "fig_autocorrelation", "fig_distribution_best"]
 
 
 rule all:
     input:
         expand(f"{FIGURES}/{{name}}{{form}}", name=PLOTS, form=FORMS.values()),
+        f"{FIGURES}/film.mp4",
         expand(
             f"{RESULTS}/{{name}}",
             name=[
                 "mixing.csv",
                 "metrics.csv",
                 "diagnostics.csv",
+                "stationarity.csv",
                 "timing.csv",
                 "table1.csv",
+                "audit.csv",
                 "provenance.json",
+                *(["agreement.csv"] if source_files(f"cases/{NAME}", "claims.csv") else []),
             ],
         ),
 
@@ -74,7 +91,7 @@ rule verify:
 rule verify_solver:
     input:
         modules("case", "dumps", "errors", "figures", "gas_field", "parameters", "segments", "solver_process"),
-        modules("stage"),
+        modules("slab", "stage"),
         source_files("scripts/bedchain/verification", "*.py"),
         schema="cases/case.schema.yaml",
         solver=rules.build_solver.output.solver,
@@ -95,6 +112,41 @@ rule verify_solver:
         "python scripts/verify_solver.py --solver {input.solver} --folder {params.folder} 2>&1 | tee {log} >&2"
 
 
+# bedFoam beside other codes on the same beds: snakemake --cores 2 peers --config peers='{repeats: 5, beds: paper}'
+rule peers:
+    input:
+        "results/peers/peers.csv",
+
+
+# Alone on the machine, since it measures times. Its finished runs are kept in results/peers/<bed>/.
+rule compare_peers:
+    input:
+        modules("case", "dumps", "errors", "figures", "gas_case", "parameters", "provenance", "segments"),
+        modules("solver_process", "stage"),
+        source_files("scripts/bedchain/peers", "*.py"),
+        source_files("peers", "*"),
+        "scripts/bedchain/verification/particle_files.py",
+        solver=rules.build_solver.output.solver,
+        decks=source_files("liggghts_inputs", "in.*", "include/*.in"),
+        gas=source_files("openfoam_case", "0.orig/*", "constant/*", "system/*"),
+    output:
+        table="results/peers/peers.csv",
+        ratios="results/peers/ratios.csv",
+        text="results/peers/peers.md",
+        figure=multiext("results/peers/figures/peers", ".png", ".pdf"),
+    log:
+        "logs/compare_peers.log",
+    conda:
+        "envs/python.yaml"
+    threads: workflow.cores or 1
+    params:
+        folder=subpath(output.table, parent=True),
+        options=" ".join(f"--{key} {value}" for key, value in config.get("peers", {}).items()),
+    shell:
+        "python scripts/compare_peers.py --solver {input.solver} --folder {params.folder} {params.options}"
+        " 2>&1 | tee {log} >&2"
+
+
 # The case file's own time does not count: only a key that the solvers need makes the particles run again.
 rule write_parameters:
     input:
@@ -113,18 +165,34 @@ rule write_parameters:
         "python scripts/write_parameters.py {input.case} {params.folder} 2>&1 | tee {log} >&2"
 
 
+# First of all that can run: what it warns of is read before the particles have taken hours.
+rule audit_scene:
+    input:
+        modules("audit", "case", "scene_numbers", "stage"),
+    output:
+        audit=f"{RESULTS}/audit.csv",
+    log:
+        f"{LOGS}/audit_scene.log",
+    priority: 1
+    conda:
+        "envs/python.yaml"
+    params:
+        case={section: CASE[section] for section in AUDITED if section in CASE},
+    script:
+        "scripts/audit_scene.py"
+
+
 # Hours for a large bed, so no edit of a script reruns it. Its state, dem/, is no declared output:
 # snakemake deletes the outputs of a job that failed, and the segments must outlive that.
 rule run_dem:
     input:
         rules.write_parameters.output,
-        solver=rules.build_solver.output.solver,
-        decks=["liggghts_inputs/in.settle", "liggghts_inputs/in.fluidize"],
+        solver=rules.build_solver.output.solver if GAS else [],
+        decks=["liggghts_inputs/in.settle", "liggghts_inputs/in.fluidize"] if GAS else source_files(DRUM, "*"),
         blocks=source_files("liggghts_inputs/include", "*.in"),
-        gas=source_files("openfoam_case", "0.orig/*", "constant/*", "system/*"),
+        gas=source_files("openfoam_case", "0.orig/*", "constant/*", "system/*") if GAS else [],
     output:
-        dem=f"{RESULTS}/dem.json",
-        bed_series=f"{RESULTS}/bed_series.csv",
+        **RUN,
     log:
         f"{LOGS}/run_dem.log",
     benchmark:
@@ -140,22 +208,96 @@ rule run_dem:
         " --ranks {threads} 2>&1 | tee {log} >&2"
 
 
+# Another realisation of the comparison window, from a state of the main run that was changed a little.
+rule repeat_dem:
+    input:
+        rules.write_parameters.output,
+        dem=RUN["dem"],
+        solver=rules.build_solver.output.solver,
+        decks=["liggghts_inputs/in.perturb", "liggghts_inputs/in.fluidize"],
+        blocks=source_files("liggghts_inputs/include", "*.in"),
+    output:
+        dem=f"{RESULTS}/repeats/{{repeat}}/dem.json",
+        bed_series=f"{RESULTS}/repeats/{{repeat}}/bed_series.csv",
+    log:
+        f"{LOGS}/repeat_dem_{{repeat}}.log",
+    benchmark:
+        f"{BENCHMARKS}/repeat_dem_{{repeat}}.tsv"
+    conda:
+        "envs/python.yaml"
+    threads: CASE["run"]["ranks"]
+    params:
+        **pick(CASE, "comparison.start_s", "comparison.end_s", "time.segment_s"),
+        folder=RESULTS,
+    shell:
+        "python scripts/run_dem.py {params.folder} --repeat {wildcards.repeat} --start {params.start_s}"
+        " --end {params.end_s} --segment {params.segment_s} --ranks {threads} 2>&1 | tee {log} >&2"
+
+
+# Of the main run, and of each repeat in a folder of its own.
 rule parse_dumps:
     input:
         modules("stage", "trajectory"),
-        dem=rules.run_dem.output.dem,
+        dem=f"{RESULTS}/{{run}}dem.json",
     output:
-        **TRAJECTORY,
+        trajectory=f"{RESULTS}/{{run}}trajectory.npy",
+        metadata=f"{RESULTS}/{{run}}trajectory.json",
     log:
-        f"{LOGS}/parse_dumps.log",
+        f"{LOGS}/{{run}}parse_dumps.log",
     benchmark:
-        f"{BENCHMARKS}/parse_dumps.tsv"
+        f"{BENCHMARKS}/{{run}}parse_dumps.tsv"
+    wildcard_constraints:
+        run="(repeats/[0-9]+/)?",
     conda:
         "envs/python.yaml"
     params:
         **pick(CASE, "bed.width_m", "bed.height_m"),
     script:
         "scripts/parse_dumps.py"
+
+
+rule measure_mixing:
+    input:
+        modules("comparison", "frames", "mixing", "stage", "trajectory"),
+        trajectory=f"{RESULTS}/repeats/{{repeat}}/trajectory.npy",
+        metadata=f"{RESULTS}/repeats/{{repeat}}/trajectory.json",
+    output:
+        mixing=f"{RESULTS}/repeats/{{repeat}}/mixing.csv",
+    log:
+        f"{LOGS}/measure_mixing_{{repeat}}.log",
+    conda:
+        "envs/python.yaml"
+    params:
+        **pick(CASE, "comparison.start_s", "comparison.end_s", "mixing"),
+        source="dem_{repeat}",
+    script:
+        "scripts/measure_mixing.py"
+
+
+# A bed that was simulated before and archived: what run_dem, parse_dumps and the repeats would leave behind.
+if REFERENCE:
+
+    ruleorder: unpack_reference > run_dem > parse_dumps > measure_mixing
+
+    rule unpack_reference:
+        input:
+            modules("archive", "packing", "stage", "trajectory"),
+            archive=source_files(REFERENCE, "*"),
+        output:
+            **TRAJECTORY,
+            **RUN,
+            gas=f"{RESULTS}/gas.npz",
+            repeats=expand(rules.measure_mixing.output.mixing, repeat=REPEATS),
+        log:
+            f"{LOGS}/unpack_reference.log",
+        benchmark:
+            f"{BENCHMARKS}/unpack_reference.tsv"
+        conda:
+            "envs/python.yaml"
+        params:
+            folder=str(REFERENCE),
+        script:
+            "scripts/unpack_reference.py"
 
 
 rule assign_cells:
@@ -212,7 +354,7 @@ rule run_chain:
     conda:
         "envs/python.yaml"
     params:
-        **pick(CASE, "comparison", "mixing", "chain.estimator", "chain.seed"),
+        **pick(CASE, "comparison.start_s", "comparison.end_s", "mixing", "chain.estimator", "chain.seed"),
         **pick(CASE, "figures.batch_height_m", "figures.moments_s"),
         options=lambda wildcards: OPTIONS[wildcards.model],
         learning=CASE["learning"],
@@ -222,11 +364,13 @@ rule run_chain:
 
 rule compare_mixing:
     input:
-        modules("cell_store", "comparison", "distribution", "errors", "frames", "mixing", "stage", "storage"),
+        modules("cell_store", "comparison", "distribution", "errors", "frames", "mixing", "noise", "stage"),
+        modules("storage"),
         **TRAJECTORY,
         cells=rules.assign_cells.output.cells,
         chains=expand(rules.run_chain.output.chain, model=MODELS),
-        bed_series=rules.run_dem.output.bed_series,
+        bed_series=RUN["bed_series"],
+        repeats=expand(f"{RESULTS}/repeats/{{repeat}}/mixing.csv", repeat=REPEATS),
     output:
         mixing=f"{RESULTS}/mixing.csv",
         metrics=f"{RESULTS}/metrics.csv",
@@ -237,7 +381,8 @@ rule compare_mixing:
     conda:
         "envs/python.yaml"
     params:
-        **pick(CASE, "comparison", "mixing", "chain.models", "figures.batch_height_m"),
+        **pick(CASE, "comparison.start_s", "comparison.end_s", "mixing", "chain.models"),
+        **pick(CASE, "figures.batch_height_m"),
         bed_start_s=CASE["learning"]["start_s"],
         bed_end_s=CASE["comparison"]["end_s"],
         weight_Pa=weight_per_area(CASE),
@@ -245,10 +390,81 @@ rule compare_mixing:
         "scripts/compare_mixing.py"
 
 
+rule plot_stationarity:
+    input:
+        modules("comparison", "figures", "frames", "stage", "stationarity", "trajectory"),
+        **TRAJECTORY,
+        bed_series=RUN["bed_series"],
+    output:
+        multiext(f"{FIGURES}/fig_stationarity", **FORMS),
+        stationarity=f"{RESULTS}/stationarity.csv",
+    log:
+        f"{LOGS}/plot_stationarity.log",
+    conda:
+        "envs/python.yaml"
+    params:
+        **pick(CASE, "mixing", "bed.thickness_m", "particles.diameter_m", "figures.resolution_dpi"),
+        start_s=CASE["learning"]["start_s"],
+        end_s=CASE["comparison"]["end_s"],
+        row_m=CASE["bed"]["height_m"] / CASE["cells"]["rows"],
+    script:
+        "scripts/plot_stationarity.py"
+
+
+rule discuss_errors:
+    input:
+        modules("averaging", "comparison", "frames", "grid", "mixing", "models", "noise", "stage"),
+        modules("trajectory"),
+        **TRAJECTORY,
+        mixing=rules.compare_mixing.output.mixing,
+    output:
+        discussion=f"{RESULTS}/discussion.csv",
+    log:
+        f"{LOGS}/discuss_errors.log",
+    benchmark:
+        f"{BENCHMARKS}/discuss_errors.tsv"
+    conda:
+        "envs/python.yaml"
+    params:
+        **pick(CASE, "cells", "mixing", "discussion", "chain.lag_s", "chain.estimator"),
+        learning=CASE["learning"],
+        comparison=pick(CASE, "comparison.start_s", "comparison.end_s"),
+        names=[model for model in MODEL_FIGURES if model in MODELS],
+    script:
+        "scripts/discuss_errors.py"
+
+
+rule plot_discussion:
+    input:
+        modules("errors", "figures", "stage"),
+        discussion=rules.discuss_errors.output.discussion,
+    output:
+        multiext(f"{FIGURES}/fig_discussion", **FORMS),
+    log:
+        f"{LOGS}/plot_discussion.log",
+    conda:
+        "envs/python.yaml"
+    params:
+        **pick(CASE, "figures.resolution_dpi"),
+        own_cell_m=cell_size(CASE),
+        own_lag_s=CASE["chain"]["lag_s"],
+        colours={model: CASE["figures"][f"{model}_colour"] for model in MODELS},
+    script:
+        "scripts/plot_discussion.py"
+
+
 rule diagnose_chains:
     input:
         modules(
-            "blocks", "cell_store", "counting", "diagnosis", "diagnostics", "estimators", "frames", "grid", "markov_chain"
+            "blocks",
+            "cell_store",
+            "counting",
+            "diagnosis",
+            "diagnostics",
+            "estimators",
+            "frames",
+            "grid",
+            "markov_chain",
         ),
         modules("markov_check", "mixing", "models", "passage", "propagation", "stage"),
         **TRAJECTORY,
@@ -266,9 +482,37 @@ rule diagnose_chains:
         **pick(CASE, "mixing", "chain.models", "chain.estimator", "chain.seed"),
         options=OPTIONS,
         learning=CASE["learning"],
-        comparison=CASE["comparison"],
+        comparison=pick(CASE, "comparison.start_s", "comparison.end_s"),
     script:
         "scripts/diagnose_chains.py"
+
+
+# Against measured profiles, where a case has them: snakemake --cores 2 --config case=mueller validate
+rule validate:
+    input:
+        f"{RESULTS}/validation.csv",
+
+
+rule validate_bed:
+    input:
+        modules("figures", "frames", "stage", "trajectory", "validation"),
+        **TRAJECTORY,
+        points=f"cases/{NAME}/measured.csv",
+    output:
+        multiext(f"{FIGURES}/fig_validation", **FORMS),
+        table=f"{RESULTS}/validation.csv",
+        metrics=f"{RESULTS}/validation_metrics.csv",
+    log:
+        f"{LOGS}/validate_bed.log",
+    conda:
+        "envs/python.yaml"
+    params:
+        **pick(CASE, "bed.width_m", "bed.thickness_m", "particles.diameter_m"),
+        **pick(CASE, "figures.resolution_dpi"),
+        start_s=CASE["learning"]["start_s"],
+        end_s=CASE["comparison"]["end_s"],
+    script:
+        "scripts/validate_bed.py"
 
 
 # Alone on the machine, since it measures times.
@@ -279,7 +523,7 @@ rule time_models:
         ),
         modules("trajectory"),
         **TRAJECTORY,
-        dem=rules.run_dem.output.dem,
+        dem=RUN["dem"],
         cells=rules.assign_cells.output.cells,
         transitions=expand(rules.build_transitions.output.transitions, model=MODELS),
     output:
@@ -293,7 +537,7 @@ rule time_models:
         **pick(CASE, "mixing", "chain.models", "chain.estimator", "chain.seed"),
         options=OPTIONS,
         learning=CASE["learning"],
-        comparison=CASE["comparison"],
+        comparison=pick(CASE, "comparison.start_s", "comparison.end_s"),
     script:
         "scripts/time_models.py"
 
@@ -358,9 +602,9 @@ rule plot_distribution:
     input:
         modules("cell_store", "diagnostics", "distribution", "figures", "grid", "stage"),
         cells=rules.assign_cells.output.cells,
-        chain=rules.run_chain.output.chain,
+        chain=lambda wildcards: f"{RESULTS}/{CHAIN_FILES.get(wildcards.model, f'chain_{wildcards.model}')}.npz",
     output:
-        multiext(f"{FIGURES}/{{figure,fig[34]}}_{{model,static|dynamic}}", **FORMS),
+        multiext(f"{FIGURES}/{{figure,fig[34]|fig_distribution}}_{{model,static|dynamic|best}}", **FORMS),
     log:
         f"{LOGS}/plot_distribution_{{figure}}_{{model}}.log",
     conda:
@@ -397,7 +641,7 @@ rule plot_snapshot:
     input:
         modules("cell_store", "figures", "gas_field", "stage", "trajectory"),
         **TRAJECTORY,
-        dem=rules.run_dem.output.dem,
+        dem=RUN["dem"],
     output:
         multiext(f"{FIGURES}/snapshot", **FORMS),
     log:
@@ -410,6 +654,26 @@ rule plot_snapshot:
         colour_map=CASE["figures"]["snapshot_colour_map"],
     script:
         "scripts/plot_snapshot.py"
+
+
+rule make_film:
+    input:
+        modules("canvas", "cell_store", "figures", "frames", "models", "stage"),
+        **TRAJECTORY,
+        cells=rules.assign_cells.output.cells,
+        transitions=f"{RESULTS}/transitions_{MODELS[0]}.npz",
+    output:
+        film=f"{FIGURES}/film.mp4",
+    log:
+        f"{LOGS}/make_film.log",
+    conda:
+        "envs/python.yaml"
+    params:
+        **pick(CASE, "comparison.start_s", "comparison.end_s", "mixing.split_x_m", "chain.seed"),
+        **pick(CASE, "particles.diameter_m", "bed.thickness_m", "gas.cell_size_m"),
+        colours=[CASE["figures"][f"{half}_colour"] for half in ["left", "right"]],
+    script:
+        "scripts/make_film.py"
 
 
 rule plot_difference:
@@ -464,10 +728,118 @@ rule plot_timescales:
         "scripts/plot_timescales.py"
 
 
+# Where a case stands for a publication: its claims, one by one.
+rule write_agreement:
+    input:
+        modules("agreement", "stage"),
+        claims=f"cases/{NAME}/claims.csv",
+        metrics=rules.compare_mixing.output.metrics,
+        mixing=rules.compare_mixing.output.mixing,
+        timing=rules.time_models.output.timing,
+    output:
+        agreement=f"{RESULTS}/agreement.csv",
+    log:
+        f"{LOGS}/write_agreement.log",
+    conda:
+        "envs/python.yaml"
+    params:
+        **pick(CASE, "chain.models"),
+    script:
+        "scripts/write_agreement.py"
+
+
+# Every model chosen by validation inside the learning window and tested once: snakemake --cores 2 scores
+rule scores:
+    input:
+        expand(f"{RESULTS}/{{name}}.csv", name=["scores", "selection"]),
+        expand(f"{FIGURES}/{{name}}{{form}}", name=SCORE_PLOTS, form=FORMS.values()),
+
+
+rule score_models:
+    input:
+        modules("candidates", "comparison", "errors", "frames", "grid", "held_out", "kept", "lagrangian"),
+        modules("model_styles", "models", "regrid", "runs", "score_rows", "selection", "stage", "starts"),
+        modules("storage", "trial"),
+        **TRAJECTORY,
+        # an archive keeps the repeats' curves, not their positions
+        repeats=expand(f"{RESULTS}/repeats/{{repeat}}/trajectory.npy", repeat=[] if REFERENCE else REPEATS),
+    output:
+        scores=f"{RESULTS}/scores.csv",
+        selection=f"{RESULTS}/selection.csv",
+        mixing=f"{RESULTS}/scores_mixing.csv",
+        lagrangian=f"{RESULTS}/scores_lagrangian.csv",
+        best=f"{RESULTS}/scores_best.npz",
+    log:
+        f"{LOGS}/score_models.log",
+    benchmark:
+        f"{BENCHMARKS}/score_models.tsv"
+    conda:
+        "envs/python.yaml"
+    params:
+        **pick(CASE, "cells", "chain.lag_s", "chain.estimator", "chain.seed", "mixing"),
+        **pick(CASE, "particles.diameter_m", "figures.batch_height_m", "figures.moments_s"),
+        learning=CASE["learning"],
+        comparison=pick(CASE, "comparison.start_s", "comparison.end_s"),
+    script:
+        "scripts/score_models.py"
+
+
+rule plot_pareto:
+    input:
+        modules("errors", "figures", "model_styles", "stage"),
+        scores=rules.score_models.output.scores,
+        selection=rules.score_models.output.selection,
+    output:
+        multiext(f"{FIGURES}/fig_pareto", **FORMS),
+    log:
+        f"{LOGS}/plot_pareto.log",
+    conda:
+        "envs/python.yaml"
+    params:
+        **pick(CASE, "figures.resolution_dpi"),
+        baseline_lag_s=CASE["chain"]["lag_s"],
+        baseline_cell_m=CASE["bed"]["width_m"] / CASE["cells"]["columns"],
+    script:
+        "scripts/plot_pareto.py"
+
+
+rule plot_best_mixing:
+    input:
+        modules("errors", "figures", "model_styles", "stage"),
+        mixing=rules.score_models.output.mixing,
+        selection=rules.score_models.output.selection,
+    output:
+        multiext(f"{FIGURES}/fig5_best", **FORMS),
+    log:
+        f"{LOGS}/plot_best_mixing.log",
+    conda:
+        "envs/python.yaml"
+    params:
+        **pick(CASE, "figures.resolution_dpi", "figures.dem_colour", "figures.static_colour"),
+    script:
+        "scripts/plot_best_mixing.py"
+
+
+rule plot_autocorrelation:
+    input:
+        modules("errors", "figures", "model_styles", "stage"),
+        lagrangian=rules.score_models.output.lagrangian,
+    output:
+        multiext(f"{FIGURES}/fig_autocorrelation", **FORMS),
+    log:
+        f"{LOGS}/plot_autocorrelation.log",
+    conda:
+        "envs/python.yaml"
+    params:
+        **pick(CASE, "figures.resolution_dpi", "figures.dem_colour"),
+    script:
+        "scripts/plot_autocorrelation.py"
+
+
 rule write_provenance:
     input:
         modules("case", "provenance", "stage"),
-        dem=rules.run_dem.output.dem,
+        dem=RUN["dem"],
         metrics=rules.compare_mixing.output.metrics,
         timing=rules.time_models.output.timing,
     output:

@@ -1,12 +1,13 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Mixing by the DEM and by the chains, and how they differ: results/<case>/mixing.csv and metrics.csv."""
 
+from collections.abc import Sequence
 from pathlib import Path
 
 import numpy as np
 import pandas as pd
 
-from bedchain import comparison
+from bedchain import comparison, noise
 from bedchain.cell_store import open_cells, window_frames
 from bedchain.distribution import observed_shares
 from bedchain.errors import UserError
@@ -20,7 +21,7 @@ def compare_mixing(
     trajectory: Path, metadata: Path, cells: Path, chains: dict[str, Path], bed_series: Path,
     mixing: Path, metrics: Path,
     start_s: float, end_s: float, split_x_m: float, split_z_m: float, batch_height_m: float,
-    bed_start_s: float, bed_end_s: float, weight_Pa: float,
+    bed_start_s: float, bed_end_s: float, weight_Pa: float, repeats: Sequence[Path] = (),
 ) -> None:  # fmt: skip
     """Put the curves of the DEM and of all chains in one table, and their differences in another.
 
@@ -44,6 +45,8 @@ def compare_mixing(
         Start of the learning and end of the comparison window, between which the bed is averaged [s].
     weight_Pa : float
         Weight of the particles over the bed's cross section [Pa].
+    repeats : sequence of Path
+        ``mixing.csv`` of each repeat of the DEM, in order of their numbers.
     """
     store = open_cells(cells)
     frames = window_frames(trajectory, metadata, store, start_s, end_s)
@@ -54,6 +57,11 @@ def compare_mixing(
     rows = comparison.bed_metrics(comparison.read_series(bed_series), weight_Pa, bed_start_s, bed_end_s)
     rows += [comparison.metric("particles", "dem", frames.cells.shape[1])]
     rows += comparison.dem_metrics(on_side, dem)
+    curves += [pd.read_csv(path) for path in repeats]
+    further = [noise.curves_of(table, f"dem_{at}", len(dem)) for at, table in enumerate(curves[1:], 1)]
+    realisations = np.stack([dem, *further])
+    if further:
+        rows += noise.floor_metrics(realisations)
     for model, path in chains.items():
         chain = read_arrays(path)
         observed = observed_shares(store, chain["moments_s"], start_s, batch_height_m)
@@ -67,6 +75,8 @@ def compare_mixing(
             remaining, share = chain[f"remaining{how}"], chain[f"batch_share{how}"]
             curves.append(comparison.curve_table(chain["times_s"], source, remaining))
             rows += comparison.model_metrics(source, remaining, dem[::lag], replicates)
+            if further:
+                rows += noise.noise_metrics(source, remaining, realisations[:, ::lag])
             rows += comparison.batch_metrics(source, chain["moments_s"], share, observed)
         rows += comparison.report_metrics(model, str(chain["report"]))
     table = pd.DataFrame(rows)
@@ -94,4 +104,5 @@ if "snakemake" in globals():
             snakemake.params.bed_start_s,
             snakemake.params.bed_end_s,
             snakemake.params.weight_Pa,
+            [Path(file) for file in snakemake.input.repeats],
         )

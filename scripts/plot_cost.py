@@ -12,7 +12,7 @@ from bedchain.figures import DOUBLE_COLUMN_IN, figure_style, save_figure
 from bedchain.stage import stage, write_csv
 
 KINDS = {
-    "simulate": ("{model} and gas: simulate", "s", True),
+    "simulate": ("{model}: simulate", "s", True),
     "learn": ("{model} chain: learn", "s", False),
     "exact": ("advance, exact expectation", "o", True),
     "monte_carlo": ("advance, Monte Carlo", "D", False),

@@ -47,7 +47,7 @@ def plot_distribution(
     png, pdf, csv : Path
         Figure in two forms, and the numbers behind it.
     model : str
-        Name of the chain.
+        Name of the chain, where its file holds none.
     start_s : float
         When the batch is put in [s].
     batch_height_m : float
@@ -59,6 +59,7 @@ def plot_distribution(
     """
     store = open_cells(cells)
     with np.load(chain) as content:
+        model = str(content["model"]) if "model" in content else model
         moments, expected, drawn = (
             content["moments_s"],
             content["batch_share"],

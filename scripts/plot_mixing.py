@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Fig. 5: the share of each marked group that is still on its side, by the DEM and by the chains."""
 
+import re
 from pathlib import Path
 
 import pandas as pd
@@ -19,6 +20,7 @@ PANELS = {
     "axial": {"low": "lower part", "up": "upper part"},
 }
 MONTE_CARLO = "_monte_carlo"
+REALISATION = r"dem(_\d+)?"
 DASHES = {"static": (0, (4, 1.5)), "dynamic": (0, (1.2, 1.2))}
 MARKERS = {"static": "o", "dynamic": "^"}
 MARKS_PER_CURVE = 14
@@ -56,6 +58,7 @@ def plot_mixing(
     if table.empty:
         raise UserError(f"{mixing} has no curves of direction {direction!r}; delete it and run again")
     table = table.merge(bands(chains), how="left", on=["time_s", "source", "group"])
+    table = with_realisations(table)
     shares, mixed = (_shares(pd.read_csv(metrics), when) for when in ("start", "mean"))
     with figure_style():
         figure, panels = plt.subplots(1, 2, figsize=(DOUBLE_COLUMN_IN, 2.8), sharex=True, sharey=True)
@@ -68,7 +71,7 @@ def plot_mixing(
         panels[0].set_ylim(max(0.0, lowest - 0.06), 1.03)
         panels[0].set_xlim(table["time_s"].min(), table["time_s"].max())
         handles, labels = panels[0].get_legend_handles_labels()
-        handles.append(Patch(color=MIXED_COLOUR, alpha=BAND_OPACITY, linewidth=0))
+        handles.append(Patch(color=colours[next(iter(chains))], alpha=BAND_OPACITY, linewidth=0))
         labels.append("95 % band of the chain")
         figure.legend(handles, labels, loc="outside upper center", ncols=4, handlelength=2.4)
         save_figure(figure, png, pdf, resolution_dpi)
@@ -108,14 +111,46 @@ def bands(chains: dict[str, Path]) -> pd.DataFrame:
     return pd.concat(parts, ignore_index=True)
 
 
+def with_realisations(table: pd.DataFrame) -> pd.DataFrame:
+    """The table with the band of the DEM's curves, from the lowest to the highest of all realisations.
+
+    Parameters
+    ----------
+    table : DataFrame
+        time_s, source, group, fraction_remaining_1, band_low_1, band_high_1.
+
+    Returns
+    -------
+    DataFrame
+        The same, with bands in the rows of ``dem`` where there are repeats, ``dem_1``, ``dem_2``, ...
+    """
+    of_dem = table["source"].str.fullmatch(REALISATION)
+    if table.loc[of_dem, "source"].nunique() < 2:
+        return table
+    ends = table[of_dem].groupby(["time_s", "group"])["fraction_remaining_1"].agg(["min", "max"])
+    main = table["source"] == "dem"
+    found = ends.loc[pd.MultiIndex.from_frame(table.loc[main, ["time_s", "group"]])]
+    table.loc[main, ["band_low_1", "band_high_1"]] = found.to_numpy()
+    return table
+
+
 def _draw_group(axes: Axes, table: pd.DataFrame, colours: dict[str, str], mixed: float) -> None:
     axes.axhline(mixed, color=MIXED_COLOUR, linewidth=0.8, linestyle=(0, (6, 2, 1, 2)), label="well mixed")
+    repeats = {name for name in table["source"] if re.fullmatch(REALISATION, name)} - {"dem"}
     for source, curve in table.groupby("source", sort=False):
         model = str(source).removesuffix(MONTE_CARLO)
         if source == "dem":
+            if curve["band_low_1"].notna().all():
+                label = f"DEM, lowest to highest of {len(repeats) + 1} runs"
+                axes.fill_between(
+                    curve["time_s"], curve["band_low_1"], curve["band_high_1"], color=colours["dem"],
+                    alpha=BAND_OPACITY, linewidth=0, label=label,
+                )  # fmt: skip
             axes.plot(
                 curve["time_s"], curve["fraction_remaining_1"], color=colours["dem"], lw=1.6, label="DEM"
             )
+        elif model in repeats:
+            continue
         elif str(source).endswith(MONTE_CARLO):
             every = max(1, len(curve) // MARKS_PER_CURVE)
             axes.plot(

@@ -15,7 +15,7 @@ from matplotlib.colors import Normalize
 
 from bedchain.cell_store import frame_at
 from bedchain.figures import SINGLE_COLUMN_IN, close_frame, figure_style, save_figure
-from bedchain.gas_field import GasField, nearest_gas, read_gas_field
+from bedchain.gas_field import GasField, gas_near
 from bedchain.stage import LOG, stage, write_csv
 from bedchain.trajectory import open_trajectory, read_manifest
 
@@ -56,10 +56,9 @@ def plot_snapshot(
         Of the png [dots per inch].
     """
     values, described = open_trajectory(trajectory, metadata)
-    case, end_s = nearest_gas(read_manifest(dem), dem.parent, "voidage", time_s)
-    gas = read_gas_field(case, "voidage")
-    frame = np.asarray(values[frame_at(np.array(described["times_s"]), end_s)], float)
-    LOG.info("particles at %g s and gas at %g s from %s", end_s, gas.time_s, case)
+    gas = gas_near(read_manifest(dem), dem.parent, "voidage", time_s)
+    frame = np.asarray(values[frame_at(np.array(described["times_s"]), gas.time_s)], float)
+    LOG.info("particles and gas at %g s", gas.time_s)
     width = described["width_m"]
     height = min((1 + FREEBOARD) * frame[1].max(), described["height_m"])
     speed = np.quantile(np.abs(frame[3]), 1 - FAST_SHARE)
@@ -73,7 +72,7 @@ def plot_snapshot(
         figure, panels = plt.subplots(1, 2, figsize=(SINGLE_COLUMN_IN, tall + 1.0), sharey=True)
         _panel(panels[0], images[0], (width, height), norms[0], colour_map, "vertical velocity [m/s]")
         _panel(panels[1], images[1], (width, height), norms[1], GAS_COLOUR_MAP, "voidage [1]")
-        panels[0].set_title(f"particles, {end_s:.2f} s")
+        panels[0].set_title(f"particles, {gas.time_s:.2f} s")
         panels[1].set_title("gas")
         panels[0].set_ylabel("z [m]")
         save_figure(figure, png, pdf, resolution_dpi)

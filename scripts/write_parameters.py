@@ -12,6 +12,7 @@ from bedchain.case import load_case, load_schema
 from bedchain.disk import require_disk, run_bytes
 from bedchain.errors import report_user_errors
 from bedchain.parameters import liggghts_text, openfoam_text, solver_parameters
+from bedchain.slab import fluidization_line
 
 
 def write_parameters(case_file: Path, folder: Path) -> None:
@@ -35,6 +36,8 @@ def write_parameters(case_file: Path, folder: Path) -> None:
     require_disk(folder, run_bytes(case))
     write_if_changed(folder / "parameters.lig", liggghts_text(parameters))
     write_if_changed(folder / "caseParameters", openfoam_text(parameters))
+    if case["gas"]["model"] != "none":
+        print(fluidization_line(case))
 
 
 def write_if_changed(file: Path, text: str) -> None:

@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """The workflow by dry runs on a copy of the repository whose results are made up and up to date."""
 
+import json
 import os
 import re
 import shutil
@@ -15,6 +16,8 @@ from snakemake.settings.types import OutputSettings, ResourceSettings
 
 sys.path.insert(0, str(Path(__file__).resolve().parents[1] / "scripts"))
 
+from bedchain.archive import solver_keys
+from bedchain.case import load_case, load_schema
 from bedchain.workflow import imported_modules, modules, source_files
 
 ROOT = Path(__file__).resolve().parents[1]
@@ -24,16 +27,24 @@ ALL = {
         "build_solver",
         "write_parameters",
         "run_dem",
+        "repeat_dem",
+        "measure_mixing",
         "parse_dumps",
         "assign_cells",
         "build_transitions",
         "run_chain",
     ),
     *("compare_mixing", "time_models", "plot_cells", "plot_cost", "plot_distribution", "plot_mixing"),
-    *("plot_snapshot", "write_table", "write_provenance"),
+    *("plot_snapshot", "write_table", "write_provenance", "audit_scene"),
     *("diagnose_chains", "plot_difference", "plot_chapman_kolmogorov", "plot_timescales"),
+    *("plot_stationarity", "discuss_errors", "plot_discussion", "make_film"),
 }
-PARTICLES = {"build_solver", "write_parameters", "run_dem", "parse_dumps"}
+AUDIT = {"audit_scene"}  # reads neither time nor cells
+PARTICLES = AUDIT | {
+    *("build_solver", "write_parameters", "run_dem", "parse_dumps", "repeat_dem", "measure_mixing"),
+}
+# of the target `scores` only
+SCORES = {"score_models", "plot_pareto", "plot_best_mixing", "plot_autocorrelation"}
 WHOLE_BED = {"plot_snapshot"}  # needs particles and gas, no cells
 
 
@@ -109,6 +120,63 @@ def test_everything_runs_in_an_empty_folder(finished, tmp_path):
     assert set(planned(tmp_path)) == ALL
 
 
+def test_scores_need_no_chain_of_the_comparison(finished, tmp_path):
+    for name in COPIED:
+        (tmp_path / name).parent.mkdir(parents=True, exist_ok=True)
+        (tmp_path / name).symlink_to(finished / name)
+    jobs = planned(tmp_path, "scores")
+    needed = PARTICLES - AUDIT - {"measure_mixing"} | {"assign_cells", "plot_distribution"}
+    assert set(jobs) - {"scores"} == SCORES | needed
+    assert jobs["plot_distribution"] == 1
+
+
+@pytest.fixture
+def with_archive(finished, tmp_path):
+    """An empty folder whose short case has an archive, as far as dry runs look into it."""
+    for name in COPIED:
+        (tmp_path / name).parent.mkdir(parents=True, exist_ok=True)
+        (tmp_path / name).symlink_to(finished / name)
+    (tmp_path / "cases").unlink()
+    shutil.copytree(finished / "cases", tmp_path / "cases")
+    case = load_case(tmp_path / "cases" / "short" / "case.yaml")
+    found = {
+        "solver_keys": solver_keys(case, load_schema()), "start_s": 1.5, "end_s": 5.5, "history_s": 0.25,
+        "n_frames": 171, "level_m": 1e-3, "repeats": 3, "files": {},
+    }  # fmt: skip
+    (tmp_path / "cases" / "short" / "reference").mkdir()
+    (tmp_path / "cases" / "short" / "reference" / "provenance.json").write_text(json.dumps(found))
+    return tmp_path
+
+
+def test_an_archived_bed_is_unpacked_and_no_solver_runs(with_archive):
+    jobs = planned(with_archive)
+    assert set(jobs) == ALL - (PARTICLES - AUDIT) | {"unpack_reference"}
+    assert jobs["unpack_reference"] == 1
+    assert set(planned(with_archive, "--config", "reference=simulate")) == ALL
+
+
+def test_what_the_archive_cannot_serve_stops_before_anything(with_archive):
+    file = with_archive / "cases" / "short" / "case.yaml"
+    text = file.read_text(encoding="utf-8")
+    file.write_text(text.replace("columns: 10", "columns: 12"), encoding="utf-8")
+    done = snakemake(with_archive, "--dry-run")
+    assert done.returncode != 0 and "cells.columns 12" in done.stderr and "divisor of 100" in done.stderr
+    done = snakemake(with_archive, "--dry-run", "--config", "reference=simulated")
+    assert done.returncode != 0 and "take archive or simulate" in done.stderr
+    shutil.rmtree(with_archive / "cases" / "short" / "reference")
+    done = snakemake(with_archive, "--dry-run", "--config", "reference=archive")
+    assert done.returncode != 0 and "short has no archive" in done.stderr
+    assert "Traceback" not in done.stderr and not (with_archive / "results").exists()
+
+
+def test_a_scene_without_gas_asks_for_nothing_of_openfoam(finished, tmp_path):
+    for name in set(COPIED) - {"openfoam_case"}:
+        (tmp_path / name).parent.mkdir(parents=True, exist_ok=True)
+        (tmp_path / name).symlink_to(finished / name)
+    jobs = planned(tmp_path, "--config", "case=drum")
+    assert set(jobs) == ALL - {"build_solver", "plot_snapshot", "repeat_dem", "measure_mixing"}
+
+
 def test_a_comment_in_the_case_file_runs_nothing(finished, case):
     file = finished / "cases" / "short" / "case.yaml"
     case("figures", "batch_height_m", "0.03  # the default, three rows")
@@ -128,8 +196,13 @@ def test_another_grid_runs_the_cells_and_what_follows(finished, case):
         ("cost_colour", "red", {"plot_cost": 1}),
         ("distribution_colour_map", "magma", {"plot_distribution": 2}),
         ("dem_colour", "red", {"plot_mixing": 2, "plot_chapman_kolmogorov": 1}),
-        ("static_colour", "red", {"plot_mixing": 2, "plot_chapman_kolmogorov": 1, "plot_timescales": 1}),
+        (
+            "static_colour",
+            "red",
+            {"plot_mixing": 2, "plot_chapman_kolmogorov": 1, "plot_timescales": 1, "plot_discussion": 1},
+        ),
         ("snapshot_colour_map", "magma", {"plot_snapshot": 1}),
+        ("left_colour", "red", {"make_film": 1}),
     ],
 )
 def test_a_colour_runs_only_its_figure(finished, case, key, value, jobs):
@@ -148,17 +221,33 @@ def test_a_colour_runs_only_its_figure(finished, case, key, value, jobs):
 )
 def test_physics_runs_the_particles_and_what_follows(finished, case, section, key, value):
     case(section, key, value)
-    assert set(planned(finished)) == ALL - {"build_solver"}
+    assert set(planned(finished)) == ALL - {"build_solver"} - (AUDIT if section == "time" else set())
 
 
 def test_a_later_end_lets_the_particles_go_on_with_the_same_parameters(finished, case):
     case("time", "end_s", "6.0")
-    assert set(planned(finished)) == ALL - {"build_solver", "write_parameters"}
+    assert set(planned(finished)) == ALL - {"build_solver", "write_parameters"} - AUDIT
+
+
+def test_another_repeat_runs_it_alone_and_what_compares(finished, case):
+    case("comparison", "repeats", "4")
+    jobs = planned(finished)
+    assert {rule: jobs.get(rule) for rule in ("repeat_dem", "parse_dumps", "measure_mixing")} == {
+        "repeat_dem": 1,
+        "parse_dumps": 1,
+        "measure_mixing": 1,
+    }
+    assert set(jobs) == {
+        *("repeat_dem", "parse_dumps", "measure_mixing", "compare_mixing", "plot_mixing"),
+        *("discuss_errors", "plot_discussion"),
+        *("write_table", "write_provenance"),
+    }
 
 
 def test_another_estimator_leaves_the_cells_alone(finished, case):
     case("chain", "estimator", "per_step")
-    assert set(planned(finished)) == ALL - PARTICLES - WHOLE_BED - {"assign_cells", "plot_cells"}
+    left_alone = PARTICLES | WHOLE_BED | {"assign_cells", "plot_cells", "plot_stationarity"}
+    assert set(planned(finished)) == ALL - left_alone
 
 
 def test_another_batch_leaves_the_matrices_alone(finished, case):
@@ -227,7 +316,7 @@ def test_a_seed_that_is_no_prime_stops_before_anything(finished, results):
 def test_an_unknown_case_is_told_the_known_ones(finished):
     done = snakemake(finished, "--config", "case=shorter")
     assert done.returncode != 0
-    assert "there is no case 'shorter'" in done.stderr and "paper, short" in done.stderr
+    assert "there is no case 'shorter'" in done.stderr and "mueller, paper, short" in done.stderr
 
 
 @pytest.fixture(scope="module")
@@ -249,7 +338,8 @@ def used_names(script: Path, kind: str) -> set[str]:
 
 
 def test_every_script_has_the_name_of_its_rule(rules):
-    assert set(rules) == ALL - {"build_solver", "write_parameters", "run_dem"}
+    without_own_name = {"build_solver", "write_parameters", "run_dem", "repeat_dem"}
+    assert set(rules) == (ALL | SCORES | {"validate_bed", "write_agreement"}) - without_own_name
     for name, rule in rules.items():
         assert rule.script == f"scripts/{name}.py"
 

@@ -10,6 +10,7 @@ from jsonschema.exceptions import ValidationError
 
 from bedchain.case_checks import physical_problems
 from bedchain.errors import CaseError, Problem
+from bedchain.scene_checks import checked_keys
 from bedchain.yaml_file import Lines, read_yaml
 
 SCHEMA_FILE = Path(__file__).resolve().parents[2] / "cases" / "case.schema.yaml"
@@ -60,7 +61,7 @@ def load_case(file: Path | str, schema_file: Path = SCHEMA_FILE) -> Case:
     broken = {problem.key for problem in problems}
     case = _with_defaults(data, schema)
     _fill_derived_defaults(case, schema)
-    problems += physical_problems(case, broken, lines)
+    problems += physical_problems(checked_keys(case), broken, lines)
     if problems:
         raise CaseError(file, sorted(problems, key=lambda problem: (problem.line or 0, problem.key)))
     return case

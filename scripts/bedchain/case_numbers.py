@@ -6,6 +6,12 @@ from fractions import Fraction
 
 DENSE_VOIDAGE = 0.4  # of a packed bed; makes the estimate of the gas velocity between particles a high one
 PACKED_AREA_SHARE = 0.82  # area covered by one layer of random close-packed discs
+PACKED_VOLUME_SHARE = 0.6  # volume filled by spheres after a fall, between random loose and random close
+START_SPACING_DIAMETERS = 1.15  # of the loose lattice that the particles fall from: no contact at the start
+
+# Distance of the layers of closest-packed spheres, in diameters: a slab as thick makes of closest discs,
+# 0.907 of the plane, closest spheres, 0.740 of space
+LAYER_DISTANCE = math.sqrt(2 / 3)
 
 
 def ratio(length: float, unit: float) -> Fraction:
@@ -55,9 +61,35 @@ def courant_number(velocity: float, step: float, cell: float) -> float:
     return velocity / DENSE_VOIDAGE * step / cell
 
 
-def settled_height(number: int, diameter: float, width: float) -> float:
-    """Height of the settled one-layer bed [m], an estimate by random close packing of discs."""
-    return number * math.pi * diameter**2 / 4 / (PACKED_AREA_SHARE * width)
+def settled_height(number: int, diameter: float, width: float, depth: float | None = None) -> float:
+    """Height of the settled bed [m], an estimate by random packing.
+
+    Parameters
+    ----------
+    number : int
+        Particles [1].
+    diameter, width : float
+        Of a particle and of the bed [m].
+    depth : float, optional
+        Between the walls in front and behind [m]; without it the bed is one layer of discs.
+    """
+    if depth is None:
+        return number * math.pi * diameter**2 / 4 / (PACKED_AREA_SHARE * width)
+    return number * math.pi * diameter**3 / 6 / (PACKED_VOLUME_SHARE * width * depth)
+
+
+def start_height(number: int, diameter: float, width: float, depth: float | None = None) -> float:
+    """Height of the loose lattice that the particles fall from [m], as ``in.settle`` makes it.
+
+    Parameters
+    ----------
+    number, diameter, width, depth
+        As in `settled_height`; at least one lattice spacing fits into width and depth.
+    """
+    spacing = START_SPACING_DIAMETERS * diameter
+    columns = math.floor(width / spacing)
+    layers = 1 if depth is None else math.floor(depth / spacing)
+    return math.ceil(number / (columns * layers)) * width / columns
 
 
 def is_prime(number: int) -> bool:

@@ -14,10 +14,9 @@ from bedchain.errors import UserError
 from bedchain.mixing import GROUPS
 
 Metric = dict[str, Any]
-SERIES_COLUMNS = (
-    "time_s",
+SERIES_COLUMNS = ("time_s", "mean_height_m")
+GAS_COLUMNS = (
     "pressure_drop_Pa",
-    "mean_height_m",
     "smallest_voidage_1",
     "voidage_clips_1",
     "volume_balance_1",
@@ -216,7 +215,7 @@ def read_series(path: Path) -> pd.DataFrame:
     Returns
     -------
     DataFrame
-        With the columns of `SERIES_COLUMNS`.
+        With the columns of `SERIES_COLUMNS`, and where there is gas with those of `GAS_COLUMNS`.
 
     Raises
     ------
@@ -227,14 +226,15 @@ def read_series(path: Path) -> pd.DataFrame:
         table = pd.read_csv(path)
     except (OSError, ValueError) as error:
         raise UserError(f"{path}: not readable ({error}); run run_dem again") from error
-    missing = [name for name in SERIES_COLUMNS if name not in table]
+    needed = SERIES_COLUMNS if "surface_angle_rad" in table else (*SERIES_COLUMNS, *GAS_COLUMNS)
+    missing = [name for name in needed if name not in table]
     if missing:
         raise UserError(f"{path} has no column {', '.join(missing)}; run run_dem again")
     return table
 
 
 def bed_metrics(series: pd.DataFrame, weight_Pa: float, start_s: float, end_s: float) -> list[Metric]:
-    """Pressure drop and height of the bed, means over a window.
+    """Pressure drop and height of the bed, or height and inclination of a drum's, means over a window.
 
     Parameters
     ----------
@@ -257,12 +257,15 @@ def bed_metrics(series: pd.DataFrame, weight_Pa: float, start_s: float, end_s: f
     part = series[(series["time_s"] >= start_s) & (series["time_s"] <= end_s)]
     if part.empty:
         raise UserError(f"bed_series.csv has no time from {start_s:g} s to {end_s:g} s; run run_dem again")
-    pressure, height = part["pressure_drop_Pa"].to_numpy(), part["mean_height_m"].to_numpy()
+    height = mean_metric("particle_height_mean", part["mean_height_m"].to_numpy(), "m")
+    if "surface_angle_rad" in series:
+        return [height, mean_metric("surface_angle_mean", part["surface_angle_rad"].to_numpy(), "rad")]
+    pressure = part["pressure_drop_Pa"].to_numpy()
     return [
         mean_metric("pressure_drop_mean", pressure, "Pa"),
         metric("weight_per_area", "dem", weight_Pa, "Pa"),
         mean_metric("pressure_drop_over_weight", pressure / weight_Pa, "1"),
-        mean_metric("particle_height_mean", height, "m"),
+        height,
         metric("voidage_smallest", "dem", series["smallest_voidage_1"].min()),
         metric("voidage_clips", "dem", series["voidage_clips_1"].sum()),
         metric("volume_balance_largest", "dem", series["volume_balance_1"].abs().max()),

@@ -9,7 +9,7 @@ from bedchain.case import Case
 from bedchain.case_numbers import ratio
 from bedchain.errors import UserError
 
-DUMP_COLUMNS = 5  # id x z vx vz
+DUMP_COLUMNS = {"one": 5, "many": 7}  # id x z vx vz, and y vy, by bed.layers
 DOUBLE_BYTES = 8
 TRAJECTORY_BYTES = 4 * 4  # x z vx vz in single precision, the store made of the frames
 CELL_BYTES = 4  # an int32 for each particle and frame
@@ -29,8 +29,10 @@ def run_bytes(case: Case) -> int:
     time, bed = case["time"], case["bed"]
     frames = int(ratio(time["end_s"], time["frame_interval_s"])) + 1
     number = case["particles"]["number"]
-    gas_cells = bed["width_m"] * bed["height_m"] / case["gas"]["cell_size_m"] ** 2
-    frame_bytes = number * (DUMP_COLUMNS * DOUBLE_BYTES + TRAJECTORY_BYTES + CELL_BYTES)
+    cell = case["gas"]["cell_size_m"]
+    depth_cells = max(1.0, bed["thickness_m"] / cell) if bed["layers"] == "many" else 1.0
+    gas_cells = bed["width_m"] * bed["height_m"] / cell**2 * depth_cells
+    frame_bytes = number * (DUMP_COLUMNS[bed["layers"]] * DOUBLE_BYTES + TRAJECTORY_BYTES + CELL_BYTES)
     segments = math.ceil(ratio(time["end_s"], time["segment_s"])) + 1
     restart_bytes = number * RESTART_BYTES_PARTICLE + gas_cells * RESTART_BYTES_GAS_CELL
     return int(MARGIN * (frames * frame_bytes + segments * restart_bytes))

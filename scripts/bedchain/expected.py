@@ -28,7 +28,7 @@ def read_expected(file: Path) -> pd.DataFrame:
     UserError
         Where a column is missing, a row is there twice, or a tolerance is not positive.
     """
-    table = pd.read_csv(file, comment="#", skipinitialspace=True)
+    table = pd.read_csv(file, comment="#", skipinitialspace=True, dtype={"unit": str})
     if missing := [name for name in COLUMNS if name not in table]:
         raise UserError(f"{file} lacks the columns {', '.join(missing)}; add them")
     if table.duplicated(["quantity", "source"]).any():

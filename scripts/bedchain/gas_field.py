@@ -9,6 +9,7 @@ import numpy as np
 import pyvista
 
 from bedchain.errors import UserError
+from bedchain.storage import read_arrays
 
 
 class GasField(NamedTuple):
@@ -31,6 +32,57 @@ class GasField(NamedTuple):
     z_m: np.ndarray
     values: np.ndarray
     mesh: Any
+
+
+def gas_near(manifest: dict[str, Any], folder: Path, name: str, time_s: float) -> GasField:
+    """A field of the gas at the moment nearest to a time that it was kept at.
+
+    Parameters
+    ----------
+    manifest : dict
+        Of the DEM run; one that was unpacked from an archive names the file of its gas.
+    folder : Path
+        Of the manifest.
+    name : str
+        ``voidage``.
+    time_s : float
+        Wanted time [s].
+
+    Returns
+    -------
+    GasField
+    """
+    if "gas" in manifest:
+        return archived_gas(folder / manifest["gas"], name, time_s)
+    case, _ = nearest_gas(manifest, folder, name, time_s)
+    return read_gas_field(case, name)
+
+
+def archived_gas(file: Path, name: str, time_s: float) -> GasField:
+    """A field out of the archived moments of the gas.
+
+    Parameters
+    ----------
+    file : Path
+        ``gas.npz``: times_s (n_times,); x_m, z_m (n_gas_cells,), row by row; fields (n_times, n_gas_cells).
+    name : str
+        Field, such as ``voidage``.
+    time_s : float
+        Wanted time [s].
+
+    Returns
+    -------
+    GasField
+    """
+    arrays = read_arrays(file)
+    moment = int(np.argmin(np.abs(arrays["times_s"] - time_s)))
+    x, z = np.unique(arrays["x_m"]), np.unique(arrays["z_m"])
+    # centres lie half a cell inside the walls
+    spacing = ((x[0] + x[-1]) / len(x), 1.0, (z[0] + z[-1]) / len(z))
+    mesh = pyvista.ImageData(dimensions=(len(x) + 1, 2, len(z) + 1), spacing=spacing, origin=(0.0, -0.5, 0.0))
+    values = np.asarray(arrays[name][moment], float)
+    mesh.cell_data[name] = values
+    return GasField(float(arrays["times_s"][moment]), arrays["x_m"], arrays["z_m"], values, mesh)
 
 
 def nearest_gas(manifest: dict[str, Any], folder: Path, name: str, time_s: float) -> tuple[Path, float]:

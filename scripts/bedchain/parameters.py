@@ -5,13 +5,12 @@ import math
 from dataclasses import dataclass
 
 from bedchain.case import Case, Schema, case_value, schema_keys
-from bedchain.case_numbers import ratio
+from bedchain.case_numbers import START_SPACING_DIAMETERS, ratio
 
 GRAVITY_M_S2 = 9.81  # standard value, rounded; downwards along z
 SKIN_DIAMETERS = (
-    0.5  # neighbour skin: a list lasts until a particle has moved half of it; speed only, no physics
+    0.7  # neighbour skin: a list lasts until a particle has moved half of it; speed only, no physics
 )
-START_SPACING_DIAMETERS = 1.15  # of the loose lattice that the particles fall from: no contact at the start
 START_SPEED_M_S = 0.05  # random, breaks the lattice; forgotten after the fall
 DUMP_SUFFIX = {"binary": "bin", "text": "txt"}
 
@@ -65,25 +64,38 @@ def derived_parameters(case: Case) -> list[Parameter]:
     """Numbers that follow from the keys, such as steps from times (whole in a checked case)."""
     time, bed, particles = case["time"], case["bed"], case["particles"]
     cell = case["gas"]["cell_size_m"]
-    diameter = particles["diameter_m"]
+    diameter, thickness = particles["diameter_m"], bed["thickness_m"]
+    many = bed["layers"] == "many"
+    cells_y = max(1, round(thickness / cell)) if many else 1
     return [
         Parameter("gravity", GRAVITY_M_S2, "m/s2", "constant, along -z"),
         Parameter("radius", diameter / 2, "m", "particles.diameter_m / 2"),
-        Parameter("slab_low", -bed["thickness_m"] / 2, "m", "-bed.thickness_m / 2"),
-        Parameter("slab_high", bed["thickness_m"] / 2, "m", "bed.thickness_m / 2"),
+        Parameter("slab_low", -thickness / 2, "m", "-bed.thickness_m / 2"),
+        Parameter("slab_high", thickness / 2, "m", "bed.thickness_m / 2"),
+        Parameter("depth_walls", int(many), "1", "bed.layers: 1 where particles move in y between walls"),
         Parameter("skin", SKIN_DIAMETERS * diameter, "m", f"{SKIN_DIAMETERS} diameters"),
         Parameter(
             "settle_spacing", START_SPACING_DIAMETERS * diameter, "m", f"{START_SPACING_DIAMETERS} diameters"
         ),
         Parameter("settle_speed", START_SPEED_M_S, "m/s", "constant, random start"),
         Parameter("gas_cells_x", int(ratio(bed["width_m"], cell)), "1", "bed.width_m / gas.cell_size_m"),
-        Parameter("gas_cells_y", 1, "1", "one layer"),
+        Parameter("gas_cells_y", cells_y, "1", "bed.thickness_m / gas.cell_size_m, rounded; 1 for one layer"),
+        Parameter("faces_type", "wall" if cells_y > 1 else "empty", "name", "from gas_cells_y"),
         Parameter("gas_cells_z", int(ratio(bed["height_m"], cell)), "1", "bed.height_m / gas.cell_size_m"),
         _steps("coupling_steps", time, "gas_step_s"),
         _steps("settle_steps", time, "settle_s"),
         _steps("frame_steps", time, "frame_interval_s"),
         Parameter("dump_suffix", DUMP_SUFFIX[case["run"]["dump_format"]], "name", "run.dump_format"),
+        *drum_parameters(case),
     ]
+
+
+def drum_parameters(case: Case) -> list[Parameter]:
+    """How fast a drum turns; nothing for a bed in a box."""
+    if "drum" not in case:
+        return []
+    speed = 2 * math.pi / case["drum"]["revolution_s"]
+    return [Parameter("drum_speed", speed, "rad/s", "2 pi / drum.revolution_s")]
 
 
 def weight_per_area(case: Case) -> float:

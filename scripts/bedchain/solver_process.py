@@ -24,6 +24,8 @@ def solver_environment() -> dict[str, str]:
     environment = dict(os.environ)
     environment.setdefault("WM_PROJECT_DIR", "/usr/share/openfoam")
     environment.setdefault("OMPI_MCA_rmaps_base_oversubscribe", "1")
+    # An overflow goes on to bedFoam's guards, which say where and when; OpenFOAM's trap knows neither
+    environment.setdefault("FOAM_SIGFPE", "false")
     # On a busy machine a rank that waits gives way
     environment.setdefault("OMPI_MCA_mpi_yield_when_idle", "1")
     environment.setdefault("OMPI_MCA_hwloc_base_binding_policy", "none")

@@ -71,8 +71,8 @@ def write_trajectory(
     folder : Path
         Folder that the frames' files are relative to.
     target : Path
-        File to make: float32 (n_frames, 4, n_particles), rows x, z [m], vx, vz [m/s], particles by id.
-        Velocities that the frames lack are NaN.
+        File to make: float32 (n_frames, 4, n_particles), rows x, z [m], vx, vz [m/s], particles by id; NaN
+        for velocities that the dumps lack.
     bounds : dict of str to float
         Width and height of the bed, ``{"x": 0.27, "z": 1.05}`` [m].
     progress : bool
@@ -82,30 +82,30 @@ def write_trajectory(
     -------
     (n_particles,) ndarray of int64
         The ids, ascending, the same in every frame.
+
+    Raises
+    ------
+    UserError
+        A frame is bad, or the dumps hold no positions.
     """
     frames, number = manifest["frames"], int(manifest["number"])
     shape = (len(frames), len(STORED), number)
     _check_disk(target, 4 * int(np.prod(shape)))
     ids: np.ndarray | None = None
     columns = manifest["columns"]
-    held = [row for row, name in enumerate(STORED) if name in columns]
-    rows = [columns.index(STORED[row]) for row in held]
-    if len(held) < len(STORED):
-        absent = ", ".join(name for name in STORED if name not in columns)
-        if {"x", "z"} & set(absent.split(", ")):
-            raise UserError(
-                f"dem.json: the frames hold no {absent}, only {', '.join(columns)}; dump them too"
-            )
-        LOG.warning("the frames hold no %s: differences of positions take their place", absent)
+    if absent := [name for name in STORED if name not in columns]:
+        if not {"x", "z"}.isdisjoint(absent):
+            raise UserError(f"the dumps hold {' '.join(columns)}, x and z are needed; write them again")
+        LOG.info("no %s in the dumps: models that need velocities take differences of positions", absent)
     # a plain stream: the pages of a memory map would stay in memory until the end
     with complete(target) as temporary, temporary.open("wb") as stream:
         write_npy_header(stream, shape, np.dtype(np.float32))
         for index in tqdm(range(len(frames)), desc="parse_dumps", unit="frame", disable=not progress):
             frame = _read_frame(manifest, index, folder, ids, bounds)
-            ids = frame[manifest["columns"].index("id")].astype(np.int64) if ids is None else ids
-            values = np.full(shape[1:], np.nan, np.float32)
-            values[held] = frame[rows]
-            stream.write(values.tobytes())
+            ids = frame[columns.index("id")].astype(np.int64) if ids is None else ids
+            nothing = np.full(frame.shape[1], np.nan)
+            stored = [frame[columns.index(name)] if name in columns else nothing for name in STORED]
+            stream.write(np.array(stored, np.float32).tobytes())
     assert ids is not None
     return ids
 

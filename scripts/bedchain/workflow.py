@@ -5,12 +5,15 @@ import ast
 from pathlib import Path
 from typing import Any
 
+from bedchain.archive import SIMULATE, check_archive
 from bedchain.case import Case, load_case, load_schema
 from bedchain.errors import UserError, report_user_errors
 from bedchain.parameters import solver_parameters
+from bedchain.scene_checks import used_keys
 
 TABLE_SECTIONS = (
     "bed",
+    "drum",
     "particles",
     "contact",
     "gas",
@@ -48,6 +51,46 @@ def case_or_exit(name: str) -> Case:
         return load_case(CASES / name / "case.yaml")
 
 
+def reference_or_exit(wanted: str | None, name: str, case: Case) -> Path | None:
+    """The archive that a case is taken from, or one clear message and the end of snakemake.
+
+    Parameters
+    ----------
+    wanted : {"archive", "simulate"}, optional
+        ``--config reference=``; without it the archive, where the case has one.
+    name : str
+        Of the case.
+    case : dict
+        A checked case.
+
+    Returns
+    -------
+    Path or None
+        ``cases/<name>/reference``; None where the bed is to be simulated.
+
+    Raises
+    ------
+    SystemExit
+        Code 1, where the word is another, there is no archive, or it does not serve the case.
+    """
+    folder = CASES / name / "reference"
+    with report_user_errors():
+        if wanted not in (None, "archive", "simulate"):
+            raise UserError(f"--config reference={wanted}: take archive or simulate")
+        if wanted == "simulate" or (wanted is None and not folder.exists()):
+            return None
+        if not folder.exists():
+            raise UserError(f"the case {name} has no archive, {folder}: leave the word out, {SIMULATE}")
+        check_archive(folder, case, load_schema())
+    return folder
+
+
+def cell_size(case: Case) -> float:
+    """Side of a square as large as a cell of a case [m]."""
+    bed, cells = case["bed"], case["cells"]
+    return float((bed["width_m"] * bed["height_m"] / (cells["columns"] * cells["rows"])) ** 0.5)
+
+
 def pick(case: Case, *keys: str) -> dict[str, Any]:
     """The values of dotted keys by their last name, or of a whole section: ``params: **pick(CASE, "cells")``.
 
@@ -82,10 +125,11 @@ def solver_values(case: Case) -> dict[str, str]:
 
 
 def table_values(case: Case) -> dict[str, Any]:
-    """Dotted key -> value, of the sections that Table 1 shows; settings of models not built are not."""
+    """Dotted key -> value, of the sections that Table 1 shows and the case uses, without models not built."""
+    used = used_keys(case)
     values: dict[str, Any] = {}
-    for section in TABLE_SECTIONS:
-        for key, value in case[section].items():
+    for section in filter(used.__contains__, TABLE_SECTIONS):
+        for key, value in used[section].items():
             if not isinstance(value, dict):
                 values[f"{section}.{key}"] = value
             elif key in case["chain"]["models"]:

@@ -55,7 +55,8 @@ def test_monte_carlo_agrees_with_the_exact_expectation(results, case, metrics):
 
 def test_mixing_table_is_complete(mixing, case):
     assert list(mixing.columns) == MIXING_COLUMNS
-    assert list(dict.fromkeys(mixing["source"])) == sources(case)
+    repeats = [f"dem_{number}" for number in range(1, case["comparison"]["repeats"] + 1)]
+    assert list(dict.fromkeys(mixing["source"])) == ["dem", *repeats, *sources(case)[1:]]
     assert mixing["fraction_remaining_1"].between(0, 1).all()
     for (_, group), curve in mixing.groupby(["source", "group"]):
         assert set(curve["direction"]) == {GROUPS[group]}
@@ -79,6 +80,19 @@ def test_metrics_are_complete_and_finite(results, metrics, case):
     banded = metrics.dropna(subset=["ci_low", "ci_high"])
     assert len(banded) > 0
     assert (banded["ci_low"] <= banded["ci_high"]).all()
+
+
+def test_repeats_give_a_noise_floor_beside_every_error(metrics, case):
+    repeats = case["comparison"]["repeats"]
+    assert (("dem", "realisations") in metrics.index) == (repeats > 0)
+    for group in GROUPS if repeats else ():
+        floor = metrics.loc[("dem", f"noise_floor_{group}")]
+        assert 0 < floor["ci_low"] < floor["value"] < floor["ci_high"]
+        for source in sources(case)[1:]:
+            over = metrics.loc[(source, f"error_over_noise_{group}"), "value"]
+            error = metrics.loc[(source, f"error_rms_{group}"), "value"]
+            assert over == pytest.approx(error / floor["value"], rel=1e-6)
+            assert (source, f"error_rms_of_mean_{group}") in metrics.index
 
 
 def test_shares_of_both_sides_make_one(metrics):

@@ -1,14 +1,13 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Gas fields of cases that OpenFOAM itself has meshed and cut, and the picture made of one."""
 
-import os
 import shutil
-import subprocess
 
 import matplotlib.image
 import numpy as np
 import pandas as pd
 import pytest
+from known_gas import COLUMNS, HEIGHT, ROWS, WIDTH, voidage_at, write_gas
 from synthetic_bed import rolling_bed, write_run
 
 from bedchain.errors import UserError
@@ -17,57 +16,13 @@ from bedchain.trajectory import read_manifest
 from parse_dumps import parse_dumps
 from plot_snapshot import plot_snapshot
 
-WIDTH, HEIGHT = 0.08, 0.20
-COLUMNS, ROWS = 8, 20
 TIMES = np.round(np.arange(0, 1 + 1e-9, 0.025), 6)
-HEADER = "FoamFile {{ version 2.0; format ascii; class {kind}; object {name}; }}\n"
-FILES = {
-    "controlDict": "startFrom startTime; startTime 0; stopAt endTime; endTime 1; deltaT 1;"
-    " writeControl timeStep; writeInterval 1; writeFormat binary;",
-    "fvSchemes": "",
-    "fvSolution": "",
-    "decomposeParDict": "numberOfSubdomains 2; method simple; simpleCoeffs { n (2 1 1); delta 1e-9; }",
-    "blockMeshDict": f"""scale 1;
-vertices ((0 -0.0005 0) ({WIDTH} -0.0005 0) ({WIDTH} 0.0005 0) (0 0.0005 0)
-    (0 -0.0005 {HEIGHT}) ({WIDTH} -0.0005 {HEIGHT}) ({WIDTH} 0.0005 {HEIGHT}) (0 0.0005 {HEIGHT}));
-blocks (hex (0 1 2 3 4 5 6 7) ({COLUMNS} 1 {ROWS}) simpleGrading (1 1 1));
-edges ();
-boundary (around {{ type wall; faces ((0 3 2 1) (4 5 6 7) (0 4 7 3) (1 2 6 5)); }}
-    faces {{ type empty; faces ((0 1 5 4) (3 7 6 2)); }});""",
-}
-
-
-def voidage_at(x, z):
-    """A field that is different in every cell."""
-    return 0.4 + 5.0 * x + 0.5 * z
 
 
 @pytest.fixture(params=["whole", "cut"])
 def case(request, tmp_path):
     """OpenFOAM case with a known voidage at 1 s, as one or cut for two ranks."""
-    folder = tmp_path / "gas"
-    for part in ("system", "constant", "0"):
-        (folder / part).mkdir(parents=True)
-    for name, text in FILES.items():
-        (folder / "system" / name).write_text(HEADER.format(kind="dictionary", name=name) + text)
-    z, x = np.meshgrid((np.arange(ROWS) + 0.5) * 0.01, (np.arange(COLUMNS) + 0.5) * 0.01, indexing="ij")
-    values = " ".join(f"{value:.6f}" for value in voidage_at(x, z).ravel())
-    (folder / "0" / "voidage").write_text(
-        HEADER.format(kind="volScalarField", name="voidage") + "dimensions [0 0 0 0 0 0 0];\n"
-        f"internalField nonuniform List<scalar> {x.size} ({values});\n"
-        "boundaryField { around { type zeroGradient; } faces { type empty; } }\n"
-    )
-    commands = ["blockMesh", *(["decomposePar"] if request.param == "cut" else [])]
-    for command in commands:
-        environment = os.environ | {"WM_PROJECT_DIR": "/usr/share/openfoam"}
-        done = subprocess.run(
-            [command], cwd=folder, env=environment, capture_output=True, text=True, check=False
-        )
-        assert done.returncode == 0, done.stdout + done.stderr
-    roots = sorted(folder.glob("processor*")) or [folder]
-    for root in roots:
-        (root / "0").rename(root / "1")
-    return folder
+    return write_gas(tmp_path / "gas", request.param == "cut")
 
 
 def test_every_gas_cell_comes_back_in_its_place(case):

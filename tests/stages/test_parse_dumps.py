@@ -2,6 +2,7 @@
 """Frames of a run into one trajectory, and what a user is told where one of them is bad."""
 
 import json
+import logging
 
 import numpy as np
 import pytest
@@ -44,13 +45,12 @@ def nothing_left(folder):
 
 
 @pytest.mark.parametrize("form", ["binary", "text"])
-def test_velocities_that_the_frames_lack_are_said_and_left_open(tmp_path, form, monkeypatch, caplog):
+def test_a_model_of_velocities_learns_from_dumps_without_them(tmp_path, form, monkeypatch):
     frames = rolling_bed(200, WIDTH, 0.1, TIMES)
     monkeypatch.setattr(synthetic_bed, "COLUMNS", ["id", "x", "z"])
     dem = write_run(tmp_path, frames[:, :2], TIMES, WIDTH, HEIGHT, form=form)
     paths = (tmp_path / "a.npy", tmp_path / "a.json")
     parse_dumps(dem, *paths, WIDTH, HEIGHT, progress=False)
-    assert "no vx, vz: differences of positions take their place" in caplog.text
     trajectory = np.load(paths[0])
     assert np.isnan(trajectory[:, 2:]).all()
     np.testing.assert_allclose(trajectory[:, :2], frames[:, :2], rtol=TEXT_PRECISION)
@@ -58,9 +58,6 @@ def test_velocities_that_the_frames_lack_are_said_and_left_open(tmp_path, form, 
     assign_cells(*paths, cells, 8, 20, 1e-3)
     build_transitions(*paths, cells, tmp_path / "t.npz", "velocity_class", "pooled", 0.025, 0.25, 0.75)
     assert models.load(tmp_path / "t.npz").report["velocities_from_differences_1"] == 1
-    changed(dem, lambda manifest: manifest.update(columns=["id", "x", "y"]))
-    with pytest.raises(UserError, match="the frames hold no z, vx, vz, only id, x, y; dump them too"):
-        parse_dumps(dem, *paths, WIDTH, HEIGHT, progress=False)
 
 
 def test_trajectory_is_what_was_simulated(run, tmp_path):
@@ -74,6 +71,22 @@ def test_trajectory_is_what_was_simulated(run, tmp_path):
     assert (metadata["ids"], metadata["number"]) == ([1, 200], 200)
     assert (metadata["width_m"], metadata["height_m"]) == (WIDTH, HEIGHT)
     assert metadata["columns"] == ["x", "z", "vx", "vz"]
+
+
+def test_dumps_without_velocities_are_taken_and_said(run, tmp_path, monkeypatch, caplog):
+    _, frames, _ = run
+    monkeypatch.setattr(synthetic_bed, "COLUMNS", ["id", "x", "z"])
+    dem = write_run(tmp_path / "bare", frames[:, :2], TIMES, WIDTH, HEIGHT)
+    with caplog.at_level(logging.INFO, "bedchain"):
+        parse_dumps(dem, tmp_path / "b.npy", tmp_path / "b.json", WIDTH, HEIGHT, progress=False)
+    trajectory = np.load(tmp_path / "b.npy")
+    np.testing.assert_array_equal(trajectory[:, :2], frames[:, :2].astype(np.float32))
+    assert np.isnan(trajectory[:, 2:]).all() and "no ['vx', 'vz'] in the dumps" in caplog.text
+    monkeypatch.setattr(synthetic_bed, "COLUMNS", ["id", "x", "vx"])
+    dem = write_run(tmp_path / "flat", frames[:, :2], TIMES, WIDTH, HEIGHT)
+    with pytest.raises(UserError, match="x and z are needed"):
+        parse_dumps(dem, tmp_path / "c.npy", tmp_path / "c.json", WIDTH, HEIGHT, progress=False)
+    assert not (tmp_path / "c.npy").exists()
 
 
 def test_text_dumps_give_the_same_trajectory(run, tmp_path):

@@ -39,12 +39,35 @@ def test_steps_and_cells_are_derived_as_whole_numbers(values):
         "gas_cells_x": 54,
         "gas_cells_y": 1,
         "gas_cells_z": 210,
-        "coupling_steps": 25,
-        "frame_steps": 1250,
-        "settle_steps": 25000,
+        "coupling_steps": 16,
+        "frame_steps": 800,
+        "settle_steps": 16000,
     }
     for name, value in derived.items():
         assert values[name] == value and isinstance(values[name], int), name
+
+
+def test_one_layer_has_no_walls_across_and_gas_in_two_dimensions(values):
+    assert (values["depth_walls"], values["gas_cells_y"], values["faces_type"]) == (0, 1, "empty")
+
+
+def test_many_layers_have_walls_and_whole_gas_cells_across():
+    case = load_case(ROOT / "cases" / "mueller" / "case.yaml")
+
+    def given():
+        found = {parameter.name: parameter.value for parameter in solver_parameters(case, load_schema())}
+        return [found[name] for name in ("depth_walls", "slab_high", "gas_cells_y", "faces_type")]
+
+    assert given() == [1, 0.005, 4, "wall"]
+    case["gas"]["cell_size_m"] = 0.011
+    assert given() == [1, 0.005, 1, "empty"]
+
+
+def test_many_layers_take_more_disk():
+    case = load_case(ROOT / "cases" / "mueller" / "case.yaml")
+    thin = case | {"bed": case["bed"] | {"layers": "one"}}
+    columns = 2 * 8 * 9240 * 401  # y and vy of each particle and frame
+    assert run_bytes(case) - run_bytes(thin) > columns
 
 
 def test_lengths_of_time_that_may_grow_are_not_given_to_the_decks(values):

@@ -53,6 +53,7 @@ bedFoam::DemCoupling::DemCoupling
     weight_((mass_ - gasDensity_*volume_)*gravity_),
     interval_(mesh.time().deltaTValue()),
     steps_(parameters.get<label>("coupling_steps")),
+    freeAcross_(parameters.get<label>("depth_walls") == 1),
     dragLaw_(namedDragLaw(gas)),
     dem_(segment.get<fileName>("deck"), deckVariables(segment)),
     grid_(slab(parameters))
@@ -138,11 +139,13 @@ void bedFoam::DemCoupling::depositVolume(volScalarField& voidage)
     grid_.completeDeposit<1>(solids);
 
     clipped_ = 0;
+    leastVoidage_ = {1, -1};
     scalarField& values = voidage.primitiveFieldRef();
     forAll(values, cell)
     {
         const double value = 1 - solids[grid_.place(cell)][0]/grid_.cellVolume();
         if (value < smallestVoidage) ++clipped_;
+        if (value < leastVoidage_.first) leastVoidage_ = {value, cell};
         values[cell] = max(value, smallestVoidage);
     }
     reduce(clipped_, sumOp<label>());
@@ -236,8 +239,10 @@ void bedFoam::DemCoupling::applyForces
         const Six around = grid_.sample<6>(gas, particle.stencil);
         for (int d = 0; d < 3; ++d)
         {
-            // Across a single layer even a force of round-off would make the bed buckle
-            const double drag = mesh_.solutionD()[d] > 0 ? particle.drag*(around[d] - particle.undragged[d]) : 0;
+            // Across a single layer even a force of round-off would make the bed buckle. Where one gas cell spans
+            // many layers the gas does not move across them and its pressure is even, but it still drags
+            const bool drags = mesh_.solutionD()[d] > 0 || freeAcross_;
+            const double drag = drags ? particle.drag*(around[d] - particle.undragged[d]) : 0;
             const double buoyancy = d == 2 ? volume_*gasDensity_*gravity_ : 0;
             const double pressure = mesh_.solutionD()[d] > 0 ? -volume_*gasDensity_*around[d + 3] : 0;
             force[i][d] = drag + pressure + buoyancy;

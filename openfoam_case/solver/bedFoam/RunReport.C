@@ -18,7 +18,8 @@ bedFoam::RunReport::RunReport(const Time& time)
     table_.open(time.globalPath()/"bed_series.csv");
     table_.precision(10);
     table_ << "time_s,inlet_velocity_m_s,pressure_drop_Pa,weight_on_gas_1,weight_on_floor_1,weight_on_sides_1,"
-        "mean_height_m,kinetic_energy_J,particles_1,smallest_voidage_1,voidage_clips_1,volume_balance_1,exchange_error_1\n";
+        "mean_height_m,kinetic_energy_J,particles_1,smallest_voidage_1,voidage_clips_1,volume_balance_1,exchange_error_1,"
+        "largest_overlap_1\n";
 }
 
 void bedFoam::RunReport::charge(Part part)
@@ -43,7 +44,7 @@ void bedFoam::RunReport::row(const Row& values)
         for (const double sum : carried_) table_ << ',' << sum/carriedSteps_;
         table_ << ',' << values.meanHeight << ',' << values.kineticEnergy << ',' << values.number << ','
             << values.smallestVoidage << ',' << values.clipped << ',' << values.volumeBalance << ','
-            << values.exchangeError << '\n';
+            << values.exchangeError << ',' << values.deepestOverlap << '\n';
     }
     carried_ = {};
     carriedSteps_ = 0;

@@ -8,7 +8,6 @@
 // Each step: particles to the next exchange, their voidage and drag to the gas, gas to the end of the
 // step, its forces back to the particles.
 
-#include <cmath>
 #include <cstdio>
 
 #include <mpi.h>
@@ -19,6 +18,7 @@
 #include "pisoControl.H"
 
 #include "DemCoupling.H"
+#include "Guards.H"
 #include "RunReport.H"
 
 int main(int argc, char* argv[])
@@ -59,6 +59,9 @@ int main(int argc, char* argv[])
         bedFoam::DemCoupling particles(mesh, parameters, gas, segment);
         particles.deposit(U, voidage, dragRate, dragSource);
         voidage.oldTime();
+        bedFoam::Guards guards(mesh, parameters, gas, particles.dem());
+        guards.checkParticles(particles.dem());
+        guards.checkVoidage(particles);
         bedFoam::RunReport report(runTime);
 
         while (runTime.loop())
@@ -66,7 +69,9 @@ int main(int argc, char* argv[])
             particles.advance();
             report.charge(bedFoam::RunReport::dem);
 
+            guards.checkParticles(particles.dem());
             particles.deposit(U, voidage, dragRate, dragSource);
+            guards.checkVoidage(particles);
             report.charge(bedFoam::RunReport::exchange);
 
             #include "setInlet.H"

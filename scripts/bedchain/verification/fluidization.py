@@ -51,7 +51,29 @@ def ramped_bed(work: Path, solver: Path) -> tuple[Setup, pd.DataFrame]:
     heap = random_bed(work / "ramp_settling", WIDTH, HEIGHT, NUMBER, friction_1=FRICTION)
     setup = settled(work, "ramp", heap, {})
     ends = f"({RAMP} {FASTEST}) ({RAMP + HOLD} {FASTEST}) ({2 * RAMP + HOLD} 0)"
-    return setup, run_gas(setup, solver, DOWN[1], f"table ((0 0) {ends})", row_every=10)
+    return setup, run_gas(setup, solver, DOWN[1], f"table ((0 0) {ends})", row_every=1)
+
+
+def voidage_under_gas(frames: np.ndarray, at_rest: int, table: pd.DataFrame, of: Suspension) -> float:
+    """Bulk voidage at the fast end of the packed part [1]: contacts that gas unloads loosen the bed.
+
+    Parameters
+    ----------
+    frames : (n_frames, n, 6) ndarray
+        Of the ramps, evenly over the table's times.
+    at_rest : int
+        The frame without gas, first or last.
+    table : DataFrame
+        Rows of bed_series.csv.
+    of : Suspension
+    """
+    voidages = [bulk_voidage(frame[:, 2], DIAMETER, WIDTH * DIAMETER) for frame in frames]
+    times = np.linspace(0, DOWN[1], len(frames))
+    speeds = np.interp(times, table["time_s"], table["inlet_velocity_m_s"])
+    fastest = PACKED[1] * minimum_fluidization(of, voidages[at_rest])
+    ramp = times <= UP[1] if at_rest == 0 else times >= DOWN[0]
+    nearest = np.where(ramp, np.abs(speeds - fastest), np.inf).argmin()
+    return voidages[nearest]
 
 
 def curve_of(
@@ -85,8 +107,8 @@ def check(work: Path, solver: Path, figures: Path) -> list[Row]:
     of, frames = suspension(setup), read_frames(setup.folder)
     weight = NUMBER * of.weight / (WIDTH * DIAMETER)
     rows, curves = [], []
-    for name, span, frame in (("up", UP, frames[0]), ("down", DOWN, frames[-1])):
-        voidage = bulk_voidage(frame[:, 2], DIAMETER, WIDTH * DIAMETER)
+    for name, span, at_rest in (("up", UP, 0), ("down", DOWN, -1)):
+        voidage = voidage_under_gas(frames, at_rest, table, of)
         reference = minimum_fluidization(of, voidage)
         onset = fitted_onset(table, span, weight, reference)
         quantity = f"minimum fluidization velocity, gas {name} [m/s]"

@@ -17,6 +17,7 @@ from bedchain.verification import (
     settled_bed,
     settling,
     suspension,
+    thickness,
     uniform_bed,
 )
 from bedchain.verification.rows import Row, table_of
@@ -29,6 +30,7 @@ CHECKS: dict[str, Check] = {
     "uniform_bed": uniform_bed.check,
     "settled_bed": settled_bed.check,
     "fluidization": fluidization.check,
+    "thickness": thickness.check,
     "conservation": conservation.check,
     "convergence": convergence.check,
 }

@@ -1,0 +1,168 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Errors of the chains by cell size and lag, with theory and noise: results/<case>/discussion.csv."""
+
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pandas as pd
+
+from bedchain import models
+from bedchain.averaging import spreading
+from bedchain.comparison import curve_errors
+from bedchain.frames import Frames, lag_frames, window
+from bedchain.grid import Grid
+from bedchain.mixing import GROUPS
+from bedchain.noise import curves_of, noise_floor
+from bedchain.stage import LOG, stage, write_csv
+from bedchain.trajectory import open_trajectory
+
+AXES = ("x", "z")
+# the steps that a chain may have to know of what came before
+HISTORY_LAGS = 4
+ROUND_OFF = 1e-6
+Row = dict[str, Any]
+
+
+def discuss_errors(
+    trajectory: Path, metadata: Path, mixing: Path, discussion: Path,
+    learning: dict[str, float], comparison: dict[str, float], split_x_m: float, split_z_m: float,
+    columns: int, rows: int, lag_s: float, estimator: str, names: list[str],
+    cell_sizes_m: list[float], lags_s: list[float],
+) -> None:  # fmt: skip
+    """Learn and run chains of many grids and lags, and measure what theory says of them.
+
+    The first of the models is run on every grid with every lag, the others with the case's own lag on every
+    grid and on its own grid with every lag. Errors are against the mean of all realisations of the DEM.
+
+    Parameters
+    ----------
+    trajectory, metadata, mixing : Path
+        ``trajectory.npy``, ``trajectory.json``, ``mixing.csv``.
+    discussion : Path
+        Table to make: quantity, source, cell_m, lag_s, part, value, unit.
+    learning, comparison : dict of str to float
+        start_s and end_s of each window [s].
+    split_x_m, split_z_m : float
+        Lines between left and right, low and up [m].
+    columns, rows : int
+        Of the case's own grid.
+    lag_s : float
+        Of the case's own chains [s].
+    estimator : str
+        How counts become probabilities.
+    names : list of str
+        Models.
+    cell_sizes_m, lags_s : list of float
+        Sizes of cells [m], rounded so that they divide the bed, and lags [s]; a lag that is no
+        multiple of the frame interval, or does not divide both windows, is left out.
+    """
+    store, described = open_trajectory(trajectory, metadata)
+    times_s, interval_s = np.array(described["times_s"]), described["frame_interval_s"]
+    learned, compared = (window(times_s, part["start_s"], part["end_s"]) for part in (learning, comparison))
+    size = described["width_m"], described["height_m"]
+    own_grid, own_lag = Grid(*size, columns, rows), lag_frames(lag_s, interval_s)
+    grids = [Grid(*size, *(max(1, round(length / cell)) for length in size)) for cell in cell_sizes_m]
+    lags = [round(lag / interval_s) for lag in lags_s if is_whole(lag / interval_s)]
+    lengths = [part.stop - part.start - 1 for part in (learned, compared)]
+    lags = [lag for lag in lags if not any(length % lag for length in lengths)]
+    curves = realisations(pd.read_csv(mixing), lengths[1] + 1)
+    found = floor_rows(curves)
+    history = HISTORY_LAGS * max(own_lag, *lags)
+    before = slice(max(0, compared.start - history), compared.start + 1)
+    for grid in dict.fromkeys([own_grid, *grids]):
+        known, start = (in_cells(store, times_s, grid, part) for part in (learned, before))
+        for lag in dict.fromkeys([own_lag, *lags]):
+            found += spreading_rows(known, grid, lag)
+            steps = lengths[1] // lag
+            for name in names:
+                if name == names[0] or own_grid == grid or own_lag == lag:
+                    chain = models.learn(name, known, grid, lag, estimator)
+                    remaining = chain.mixing(start, split_x_m, split_z_m, steps)
+                    found += error_rows(name, grid, chain.lag_s, remaining, curves.mean(axis=0)[::lag])
+        LOG.info("%d x %d cells of %.3g m", grid.columns, grid.rows, cell_size(grid))
+    write_csv(pd.DataFrame(found), discussion)
+
+
+def is_whole(number: float) -> bool:
+    """Whether a ratio is a whole number up to round-off, at least 1."""
+    return round(number) >= 1 and abs(number - round(number)) < ROUND_OFF
+
+
+def in_cells(store: np.ndarray, times_s: np.ndarray, grid: Grid, part: slice) -> Frames:
+    """Frames of a part of the trajectory on a grid."""
+    x, z, vx, vz = (store[part, row] for row in range(4))
+    return Frames(times_s[part], x, z, grid.cell_of(x, z), vx, vz)
+
+
+def realisations(table: pd.DataFrame, n_times: int) -> np.ndarray:
+    """Curves of the DEM and of its repeats, (n_realisations, n_times, 4), the main run first."""
+    names = [name for name in dict.fromkeys(table["source"]) if name == "dem" or name.startswith("dem_")]
+    return np.stack([curves_of(table, name, n_times) for name in names])
+
+
+def cell_size(grid: Grid) -> float:
+    """Side of a square as large as a cell [m]."""
+    return float(np.sqrt(grid.cell_width_m * grid.cell_height_m))
+
+
+def floor_rows(curves: np.ndarray) -> list[Row]:
+    """Noise floor of each group, where there are repeats."""
+    if len(curves) < 2:
+        return []
+    floor, _ = noise_floor(curves)
+    return [
+        _row("noise_floor", "dem", np.nan, np.nan, group, value, "1")
+        for (_, group), value in zip(GROUPS, floor, strict=True)
+    ]
+
+
+def error_rows(name: str, grid: Grid, lag_s: float, remaining: np.ndarray, dem: np.ndarray) -> list[Row]:
+    """Signed (mean of chain - DEM) and rms error of each group."""
+    errors = curve_errors(remaining, dem)
+    return [
+        _row(quantity, name, cell_size(grid), lag_s, group, errors[quantity][column], "1")
+        for quantity in ("error_signed", "error_rms")
+        for column, (_, group) in enumerate(GROUPS)
+    ]
+
+
+def spreading_rows(frames: Frames, grid: Grid, lag: int) -> list[Row]:
+    """Dispersion of particles and cells, and what averaging over cells should add."""
+    lag_s = lag * frames.interval_s
+    found = spreading(frames.x_m, frames.z_m, grid, lag, lag_s)
+    return [
+        _row(quantity, "dem", cell_size(grid), lag_s, axis, values[at], "m2/s")
+        for quantity, values in zip(
+            ("dispersion", "dispersion_of_cells", "dispersion_added"), found, strict=True
+        )
+        for at, axis in enumerate(AXES)
+    ]
+
+
+def _row(quantity: str, source: str, cell_m: float, lag_s: float, part: str, value: float, unit: str) -> Row:
+    return {
+        "quantity": quantity, "source": source, "cell_m": cell_m, "lag_s": lag_s, "part": part,
+        "value": float(value), "unit": unit,
+    }  # fmt: skip
+
+
+if "snakemake" in globals():
+    with stage(snakemake.log[0]):
+        discuss_errors(
+            Path(snakemake.input.trajectory),
+            Path(snakemake.input.metadata),
+            Path(snakemake.input.mixing),
+            Path(snakemake.output.discussion),
+            snakemake.params.learning,
+            snakemake.params.comparison,
+            snakemake.params.split_x_m,
+            snakemake.params.split_z_m,
+            snakemake.params.columns,
+            snakemake.params.rows,
+            snakemake.params.lag_s,
+            snakemake.params.estimator,
+            snakemake.params.names,
+            snakemake.params.cell_sizes_m,
+            snakemake.params.lags_s,
+        )

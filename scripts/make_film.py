@@ -1,0 +1,125 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""A film of the comparison: particles of the DEM, their voidage, particles of a chain: figures/film.mp4."""
+
+from pathlib import Path
+
+import imageio_ffmpeg
+import numpy as np
+from matplotlib import pyplot as plt
+from matplotlib import rcParams
+from matplotlib.animation import FFMpegWriter
+from matplotlib.axes import Axes
+from matplotlib.image import AxesImage
+from tqdm import tqdm
+
+from bedchain import models
+from bedchain.canvas import Canvas, in_their_cells, voidages
+from bedchain.cell_store import frames_up_to, open_cells, window_frames
+from bedchain.figures import close_frame, figure_style
+from bedchain.frames import lag_frames
+from bedchain.stage import LOG, complete, stage
+
+FRAMES_PER_SECOND = 20
+# of particles that change from frame to frame: 4 MB for 10 s
+KILOBITS_PER_SECOND = 3200
+HEIGHT_IN, DPI = 6.4, 150
+# freeboard without particles is not shown, but for this share of the height shown
+FREEBOARD = 0.1
+VOIDAGE_COLOURS, VOIDAGE_LEAST = "Blues_r", 0.35
+
+
+def make_film(
+    trajectory: Path, metadata: Path, cells: Path, transitions: Path, film: Path,
+    start_s: float, end_s: float, split_x_m: float, diameter_m: float, thickness_m: float, gas_cell_m: float,
+    colours: list[str], seed: int, progress: bool = True,
+) -> None:  # fmt: skip
+    """Draw every step of the chain over the comparison, particles in the colour of the half they started in.
+
+    Parameters
+    ----------
+    trajectory, metadata, cells, transitions : Path
+        ``trajectory.npy``, ``trajectory.json``, ``cells.npz``, ``transitions_<model>.npz``.
+    film : Path
+        mp4 to make.
+    start_s, end_s : float
+        The comparison window [s].
+    split_x_m : float
+        Line between left and right [m].
+    diameter_m, thickness_m : float
+        Of a particle, of the slab [m].
+    gas_cell_m : float
+        Cells that the voidage is shown in [m].
+    colours : list of str
+        Of particles that started left and right.
+    seed : int
+        Of the chain's Monte Carlo run, and of where in its cell each particle is drawn.
+    progress : bool
+        Show a bar with the time left.
+    """
+    store, chain = open_cells(cells), models.load(transitions)
+    frames = window_frames(trajectory, metadata, store, start_s, end_s)
+    lag = lag_frames(chain.lag_s, frames.interval_s)
+    start = frames_up_to(trajectory, metadata, store, start_s, lag)
+    for_paths, for_places = np.random.default_rng(seed).spawn(2)
+    top = min(store.grid.height_m, (1 + FREEBOARD) * float(max(z.max() for z in frames.z_m)))
+    canvas = Canvas(store.grid.width_m, top, diameter_m, colours)
+    left = frames.x_m[0] < split_x_m
+    dem = zip(frames.x_m[::lag], frames.z_m[::lag], strict=True)
+    paths = chain.paths(start, (len(frames.times_s) - 1) // lag, for_paths)
+    places = in_their_cells(paths, store.grid, for_places.random((2, left.size)))
+    voidage = voidages(frames, lag, store.grid.width_m, top, gas_cell_m, thickness_m, diameter_m)
+    rcParams["animation.ffmpeg_path"] = imageio_ffmpeg.get_ffmpeg_exe()
+    writer = FFMpegWriter(fps=FRAMES_PER_SECOND, bitrate=KILOBITS_PER_SECOND)
+    with figure_style(), complete(film) as temporary:
+        # a film's frames are of even numbers of pixels
+        wide = 2 * round(DPI * HEIGHT_IN * (2.4 * store.grid.width_m / top + 0.35) / 2) / DPI
+        figure, panels = plt.subplots(1, 3, figsize=(wide, HEIGHT_IN), sharey=True)
+        names = ("DEM", "voidage of the DEM", f"{chain.name} chain")
+        images = [_panel(*pair, canvas) for pair in zip(panels, names, strict=True)]
+        images[1].set(cmap=VOIDAGE_COLOURS, clim=(VOIDAGE_LEAST, 1.0))
+        panels[0].set_ylabel("z [m]")
+        title = figure.suptitle(" ", fontsize=9)
+        steps = zip(frames.times_s[::lag], dem, voidage, places, strict=True)
+        total = (len(frames.times_s) - 1) // lag + 1
+        with writer.saving(figure, str(temporary), DPI):
+            for time_s, of_dem, gas, of_chain in tqdm(steps, "make_film", total, disable=not progress):
+                for image, content in zip(
+                    images, (canvas.discs(*of_dem, left), gas, canvas.discs(*of_chain, left)), strict=True
+                ):
+                    image.set_data(content)
+                title.set_text(f"{time_s:.3f} s")
+                writer.grab_frame()
+    LOG.info("%d frames, %.1f MB in %s", total, film.stat().st_size / 1e6, film)
+
+
+def _panel(axes: Axes, name: str, canvas: Canvas) -> AxesImage:
+    width, height = canvas.size_m
+    image = axes.imshow(
+        np.full((1, 1, 3), 255, np.uint8),
+        extent=(0, width, 0, height),
+        origin="lower",
+        interpolation="antialiased",
+    )
+    axes.set(xticks=[0, width], xlabel="x [m]", xlim=(0, width), ylim=(0, height))
+    axes.set_title(name)
+    close_frame(axes)
+    return image
+
+
+if "snakemake" in globals():
+    with stage(snakemake.log[0]):
+        make_film(
+            Path(snakemake.input.trajectory),
+            Path(snakemake.input.metadata),
+            Path(snakemake.input.cells),
+            Path(snakemake.input.transitions),
+            Path(snakemake.output.film),
+            snakemake.params.start_s,
+            snakemake.params.end_s,
+            snakemake.params.split_x_m,
+            snakemake.params.diameter_m,
+            snakemake.params.thickness_m,
+            snakemake.params.cell_size_m,
+            snakemake.params.colours,
+            snakemake.params.seed,
+        )

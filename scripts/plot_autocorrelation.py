@@ -1,0 +1,87 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""How long particles remember which way they went, and how far they get: DEM and all models."""
+
+from pathlib import Path
+
+import numpy as np
+import pandas as pd
+from matplotlib import pyplot as plt
+from matplotlib.axes import Axes
+
+from bedchain.errors import UserError
+from bedchain.figures import DOUBLE_COLUMN_IN, LINE_COLOUR, figure_style, save_figure
+from bedchain.model_styles import BASELINE, label, model_styles
+from bedchain.stage import stage, write_csv
+
+ROWS = {"x": "along x", "z": "along z"}
+
+
+def plot_autocorrelation(
+    lagrangian: Path, png: Path, pdf: Path, csv: Path, dem_colour: str, resolution_dpi: int
+) -> None:
+    """Draw displacement autocorrelation and mean-square displacement, along x and z.
+
+    Parameters
+    ----------
+    lagrangian : Path
+        ``scores_lagrangian.csv``.
+    png, pdf, csv : Path
+        Figure in two forms, and the numbers behind it.
+    dem_colour : str
+        Colour of the DEM.
+    resolution_dpi : int
+        Of the png [dots per inch].
+
+    Raises
+    ------
+    UserError
+        The DEM is missing.
+    """
+    table = pd.read_csv(lagrangian)
+    if "dem" not in set(table["source"]):
+        raise UserError(f"{lagrangian} lacks the DEM; delete it and run again")
+    with figure_style():
+        figure, panels = plt.subplots(2, 2, figsize=(DOUBLE_COLUMN_IN, 4.8), sharex="col")
+        for (auto, msd), (axis, name) in zip(panels, ROWS.items(), strict=True):
+            part = table[table["axis"] == axis]
+            _draw(auto, part, "autocorrelation_1", dem_colour)
+            _draw(msd, part[part["time_s"] > 0].assign(cm2=1e4 * part["msd_m2"]), "cm2", dem_colour)
+            auto.axhline(0, color=LINE_COLOUR, lw=0.6)
+            auto.set_ylabel("displacement autocorrelation [1]")
+            spans = sorted({f"{span:g} s" for span in part["span_s"]})
+            auto.set_title(f"{name}, displacements over {' or '.join(spans)}", loc="left")
+            msd.set(xscale="log", yscale="log", ylabel="mean-square displacement [cm²]")
+        for axes in panels[-1]:
+            axes.set_xlabel("time between [s]")
+        handles, labels = panels[0, 0].get_legend_handles_labels()
+        figure.legend(handles, labels, loc="outside upper center", ncols=3, handlelength=2.8)
+        save_figure(figure, png, pdf, resolution_dpi)
+    write_csv(table, csv)
+
+
+def _draw(axes: Axes, table: pd.DataFrame, column: str, dem_colour: str) -> None:
+    styles = model_styles(set(table["source"]) - {"dem"})
+    for source, curve in table.groupby("source", sort=False):
+        if source == "dem":
+            axes.plot(curve["time_s"], curve[column], color=dem_colour, lw=2.0, label="DEM")
+            continue
+        style = styles[str(source)]
+        axes.plot(
+            curve["time_s"], np.where(curve[column] == 0, np.nan, curve[column]), color=style.colour,
+            ls=style.dash, marker=style.marker, ms=3, mfc="white" if source == BASELINE else style.colour,
+            label=label(str(source)),
+        )  # fmt: skip
+    axes.grid(axis="y", color="#e2e2e2", linewidth=0.5)
+    axes.set_axisbelow(True)
+
+
+if "snakemake" in globals():
+    with stage(snakemake.log[0]):
+        plot_autocorrelation(
+            Path(snakemake.input.lagrangian),
+            Path(snakemake.output.png),
+            Path(snakemake.output.pdf),
+            Path(snakemake.output.csv),
+            snakemake.params.dem_colour,
+            snakemake.params.resolution_dpi,
+        )

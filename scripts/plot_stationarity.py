@@ -1,0 +1,155 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Is the bed steady? Drifts over learning and comparison, with their intervals: stationarity.csv, figure."""
+
+from pathlib import Path
+
+import numpy as np
+import pandas as pd
+from matplotlib import pyplot as plt
+from matplotlib.axes import Axes
+
+from bedchain.comparison import read_series
+from bedchain.figures import DOUBLE_COLUMN_IN, figure_style, save_figure
+from bedchain.frames import window
+from bedchain.stage import LOG, stage, write_csv
+from bedchain.stationarity import drift_table, profiles
+from bedchain.trajectory import open_trajectory
+
+TITLES = {
+    "pressure_drop": "pressure drop [Pa]",
+    "surface_angle": "inclination of the surface [rad]",
+    "particle_height": "mean particle height [m]",
+    "share_left": "share in the left half [1]",
+    "share_low": "share in the lower part [1]",
+}
+LINE_COLOUR, HALF_COLOURS = "#222222", ("#4477aa", "#ee6677")
+TREND_COLOUR = "#ee6677"
+
+
+def plot_stationarity(
+    bed_series: Path, trajectory: Path, metadata: Path, stationarity: Path, png: Path, pdf: Path, csv: Path,
+    start_s: float, end_s: float, split_x_m: float, split_z_m: float,
+    row_m: float, thickness_m: float, diameter_m: float, resolution_dpi: int,
+) -> None:  # fmt: skip
+    """Judge pressure drop (in a drum the inclination), height, shares of both sides and voidage by height.
+
+    Parameters
+    ----------
+    bed_series, trajectory, metadata : Path
+        ``bed_series.csv``, ``trajectory.npy``, ``trajectory.json``.
+    stationarity : Path
+        Table of drifts to make.
+    png, pdf, csv : Path
+        Figure in two forms, and the series behind it.
+    start_s, end_s : float
+        Start of the learning, end of the comparison [s].
+    split_x_m, split_z_m : float
+        Lines between left and right, low and up [m].
+    row_m : float
+        Height of a row of the voidage profile [m].
+    thickness_m, diameter_m : float
+        Of the slab, of a particle [m].
+    resolution_dpi : int
+        Of the png [dots per inch].
+    """
+    series = read_series(bed_series)
+    series = series[series["time_s"].between(start_s, end_s)]
+    step_s = float(series["time_s"].diff().median())
+    store, described = open_trajectory(trajectory, metadata)
+    times_s = np.array(described["times_s"])
+    frames = window(times_s, start_s, end_s)
+    rows = round(described["height_m"] / row_m)
+    edges = np.linspace(0, described["height_m"], rows + 1)
+    profile = profiles(store[frames, 1], edges, described["width_m"], thickness_m, diameter_m)
+    interval_s = described["frame_interval_s"]
+    first, unit = ("pressure_drop", "Pa") if "pressure_drop_Pa" in series else ("surface_angle", "rad")
+    seen = {
+        first: (unit, step_s, series[f"{first}_{unit}"].to_numpy()),
+        "particle_height": ("m", step_s, series["mean_height_m"].to_numpy()),
+        "share_left": ("1", interval_s, (store[frames, 0] < split_x_m).mean(axis=1)),
+        "share_low": ("1", interval_s, (store[frames, 1] < split_z_m).mean(axis=1)),
+    }
+    middles = (edges[1:] + edges[:-1]) / 2
+    table = drift_table(seen, profile, middles, interval_s)
+    shown = pd.concat(
+        [
+            pd.DataFrame(
+                {"quantity": name, "time_s": start_s + step * np.arange(len(values)), "value": values}
+            )
+            for name, (_, step, values) in seen.items()
+        ]
+    )
+    with figure_style():
+        figure = plt.figure(figsize=(DOUBLE_COLUMN_IN, 3.6))
+        grid = figure.add_gridspec(2, 3, width_ratios=(1, 1, 0.9))
+        for at, name in enumerate(seen):
+            axes = figure.add_subplot(grid[at // 2, at % 2])
+            _draw_series(axes, shown[shown["quantity"] == name], table, name)
+            if at >= 2:
+                axes.set_xlabel("time [s]")
+        _draw_profile(figure.add_subplot(grid[:, 2]), profile, middles, table)
+        save_figure(figure, png, pdf, resolution_dpi)
+    write_csv(table, stationarity)
+    write_csv(shown, csv)
+    drifting = table[table["stationary_1"] == 0]
+    LOG.info(
+        "%d of %d drifts are more than chance: %s", len(drifting), len(table), ", ".join(drifting["quantity"])
+    )
+
+
+def _draw_series(axes: Axes, series: pd.DataFrame, table: pd.DataFrame, name: str) -> None:
+    """A series with the straight line through it; the title says its change and interval."""
+    row = table[table["quantity"] == name].iloc[0]
+    ends = series["time_s"].iloc[[0, -1]]
+    axes.plot(series["time_s"], series["value"], color=LINE_COLOUR, lw=0.6)
+    line = [row["mean"] - row["drift"] / 2, row["mean"] + row["drift"] / 2]
+    axes.plot(ends, line, color=TREND_COLOUR, lw=1.6)
+    verdict = "steady" if row["stationary_1"] else "drifts"
+    share = [100 * row[key] / row["mean"] for key in ("drift", "ci_low", "ci_high")]
+    axes.set_title(
+        f"{TITLES[name]}\n{share[0]:+.1f} % ({share[1]:+.1f} to {share[2]:+.1f} %): {verdict}", loc="left"
+    )
+    axes.set_xlim(*ends)
+
+
+def _draw_profile(axes: Axes, profile: np.ndarray, middles: np.ndarray, table: pd.DataFrame) -> None:
+    """Voidage by height in both halves of the span; rows that drift are marked."""
+    rows = table[table["quantity"] == "voidage"]
+    half = len(profile) // 2
+    for part, name, colour, style in zip(
+        (profile[:half], profile[half:]),
+        ("first half", "second half"),
+        HALF_COLOURS,
+        ("-", (0, (4, 1.5))),
+        strict=True,
+    ):
+        axes.plot(part.mean(axis=0), middles, color=colour, linestyle=style, label=name)
+    off = rows[rows["stationary_1"] == 0]
+    if len(off):
+        axes.plot(
+            off["mean"], off["height_m"], "s", ms=3, mfc="none", color=LINE_COLOUR, label="row that drifts"
+        )
+    axes.set(xlabel="voidage [1]", ylabel="z [m]", ylim=(0, 1.1 * rows["height_m"].max()))
+    axes.set_title(f"{len(off)} of {len(rows)} rows drift", loc="left")
+    axes.legend(loc="upper left")
+
+
+if "snakemake" in globals():
+    with stage(snakemake.log[0]):
+        plot_stationarity(
+            Path(snakemake.input.bed_series),
+            Path(snakemake.input.trajectory),
+            Path(snakemake.input.metadata),
+            Path(snakemake.output.stationarity),
+            Path(snakemake.output.png),
+            Path(snakemake.output.pdf),
+            Path(snakemake.output.csv),
+            snakemake.params.start_s,
+            snakemake.params.end_s,
+            snakemake.params.split_x_m,
+            snakemake.params.split_z_m,
+            snakemake.params.row_m,
+            snakemake.params.thickness_m,
+            snakemake.params.diameter_m,
+            snakemake.params.resolution_dpi,
+        )

@@ -1,0 +1,106 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""The simulated bed against measured profiles: validation.csv, validation_metrics.csv and a figure."""
+
+from pathlib import Path
+
+import numpy as np
+import pandas as pd
+from matplotlib import pyplot as plt
+
+from bedchain.figures import DOUBLE_COLUMN_IN, LINE_COLOUR, figure_style, save_figure
+from bedchain.frames import window
+from bedchain.stage import LOG, stage, write_csv
+from bedchain.trajectory import open_trajectory
+from bedchain.validation import Bed, compare, read_points, simulated
+
+AIMS = {"voidage_error_rms": 0.05, "particle_velocity_error_rms": 0.04}
+FINE_POINTS = 81  # of the drawn curve
+LABELS = {"voidage_1": "voidage [1]", "particle_velocity_m_s": "particle velocity [m/s]"}
+SIMULATED = "#0077bb"
+PANEL_IN, LEGEND_IN = 1.9, 0.3
+
+
+def draw(table: pd.DataFrame, curves: pd.DataFrame, png: Path, pdf: Path, resolution_dpi: int) -> None:
+    """A row of panels for each quantity, one for each height: measured points, simulated curve and band."""
+    rows = [list(points.groupby("height_m")) for _, points in table.groupby("quantity", sort=False)]
+    size = DOUBLE_COLUMN_IN, PANEL_IN * len(rows) + LEGEND_IN
+    with figure_style():
+        figure, axes = plt.subplots(len(rows), max(map(len, rows)), squeeze=False, figsize=size)
+        for panels, heights in zip(axes, rows, strict=True):
+            for axis in panels[len(heights) :]:
+                axis.set_visible(False)
+            for axis, (height, points) in zip(panels, heights, strict=False):
+                quantity = points["quantity"].iloc[0]
+                curve = curves[(curves["quantity"] == quantity) & (curves["height_m"] == height)]
+                x, low, high = 1e3 * curve["position_x_m"], curve["ci_low"], curve["ci_high"]
+                axis.fill_between(x, low, high, color=SIMULATED, alpha=0.25, linewidth=0, label="95 % band")
+                axis.plot(x, curve["simulated"], color=SIMULATED, label="simulated")
+                style = {"color": LINE_COLOUR, "markersize": 3, "markerfacecolor": "none"}
+                axis.plot(1e3 * points["position_x_m"], points["measured"], "o", label="measured", **style)
+                axis.set(xlabel="x [mm]", ylabel=LABELS[quantity], title=f"z = {1e3 * height:g} mm")
+            for axis in panels[1:]:
+                axis.sharey(panels[0])
+        figure.legend(*axes[0, 0].get_legend_handles_labels(), loc="outside upper center", ncols=3)
+        save_figure(figure, png, pdf, resolution_dpi)
+
+
+def validate_bed(
+    trajectory: Path, metadata: Path, points: Path,
+    table: Path, metrics: Path, png: Path, pdf: Path, csv: Path,
+    start_s: float, end_s: float, diameter_m: float, width_m: float, thickness_m: float, resolution_dpi: int,
+) -> None:  # fmt: skip
+    """Average the bed over a window as the measurement does, and put both side by side.
+
+    Parameters
+    ----------
+    trajectory, metadata : Path
+        ``trajectory.npy``, ``trajectory.json``.
+    points : Path
+        Measured points, ``cases/<case>/measured.csv``.
+    table, metrics : Path
+        Get every point, and the differences with their aims.
+    png, pdf, csv : Path
+        Figure, and its curves.
+    start_s, end_s : float
+        The window [s].
+    diameter_m, width_m, thickness_m : float
+        Of particles and bed [m].
+    resolution_dpi : int
+        Of the png [dots per inch].
+    """
+    measured = read_points(points)
+    store, described = open_trajectory(trajectory, metadata)
+    frames = store[window(np.array(described["times_s"]), start_s, end_s)]
+    bed = Bed(frames, described["frame_interval_s"], diameter_m / 2, width_m, thickness_m)
+    compared, found = compare(measured, bed)
+    found["aim"] = found["quantity"].map(AIMS)
+    x = np.linspace(0, width_m, FINE_POINTS)
+    panels = measured[["quantity", "height_m"]].drop_duplicates().itertuples(index=False)
+    curves = pd.concat([simulated(bed, quantity, height, x)[0] for quantity, height in panels])
+    draw(compared, curves, png, pdf, resolution_dpi)
+    write_csv(curves, csv)
+    write_csv(compared, table)
+    write_csv(found, metrics)
+    for row in found[found["aim"].notna()].itertuples():
+        LOG.info("%s %.4g %s, aim %.4g: %s", row.quantity, row.value, row.unit, row.aim,
+                 "met" if row.value <= row.aim else "missed")  # fmt: skip
+
+
+if "snakemake" in globals():
+    with stage(snakemake.log[0]):
+        validate_bed(
+            Path(snakemake.input.trajectory),
+            Path(snakemake.input.metadata),
+            Path(snakemake.input.points),
+            Path(snakemake.output.table),
+            Path(snakemake.output.metrics),
+            Path(snakemake.output.png),
+            Path(snakemake.output.pdf),
+            Path(snakemake.output.csv),
+            snakemake.params.start_s,
+            snakemake.params.end_s,
+            snakemake.params.diameter_m,
+            snakemake.params.width_m,
+            snakemake.params.thickness_m,
+            snakemake.params.resolution_dpi,
+        )
