@@ -33,5 +33,6 @@ def results():
 
 @pytest.fixture(scope="session")
 def metrics(results):
-    """Values by source and quantity."""
-    return pd.read_csv(results / "metrics.csv").set_index(["source", "quantity"]).sort_index()
+    """Values by source and quantity; where the case was validated, of that too."""
+    files = [results / "metrics.csv", *results.glob("validation_metrics.csv")]
+    return pd.concat(map(pd.read_csv, files)).set_index(["source", "quantity"]).sort_index()

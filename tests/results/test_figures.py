@@ -1,9 +1,14 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Every figure is there in both forms with its numbers, and is not a blank page."""
 
+import math
+
 import matplotlib.image
 import pandas as pd
 import pytest
+
+from bedchain.case import load_schema
+from bedchain.parameters import solver_parameters
 
 NAMES = ["fig1_cells", "fig2_cost", "fig3_static", "fig4_dynamic", "fig5a_radial", "fig5b_axial", "snapshot"]
 NAMES += ["fig_difference", "fig_chapman_kolmogorov", "fig_timescales", "fig_stationarity", "fig_discussion"]
@@ -33,8 +38,8 @@ def test_figure_has_its_numbers_beside_it(folder, name):
 def test_snapshot_shows_every_particle(folder, case):
     parts = pd.read_csv(folder / "snapshot.csv").groupby("part").size()
     assert parts["particle"] == case["particles"]["number"]
-    cells = case["bed"]["width_m"] * case["bed"]["height_m"] / case["gas"]["cell_size_m"] ** 2
-    assert parts["gas_cell"] == round(cells)
+    numbers = {given.name: given.value for given in solver_parameters(case, load_schema())}
+    assert parts["gas_cell"] == math.prod(numbers[f"gas_cells_{along}"] for along in "xyz")
 
 
 def test_snapshot_has_bubbles_and_bed(folder):
