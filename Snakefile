@@ -124,7 +124,7 @@ rule compare_peers:
         modules("case", "dumps", "errors", "figures", "gas_case", "parameters", "provenance", "segments"),
         modules("solver_process", "stage"),
         source_files("scripts/bedchain/peers", "*.py"),
-        source_files("peers", "*"),
+        source_files("scripts/bedchain/peers/inputs", "*"),
         "scripts/bedchain/verification/particle_files.py",
         solver=rules.build_solver.output.solver,
         decks=source_files("liggghts_inputs", "in.*", "include/*.in"),

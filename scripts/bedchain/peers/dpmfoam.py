@@ -14,7 +14,7 @@ from bedchain.peers.bed import Bed, write_inputs
 from bedchain.peers.outcome import Outcome, Peer
 from bedchain.solver_process import run_logged
 
-CASE = Path("peers/dpmfoam")
+CASE = Path("scripts/bedchain/peers/inputs/dpmfoam")
 CLOUD = Path("lagrangian/kinematicCloud")
 SUBCYCLES = re.compile(r"^ +(\d+) move-collide subCycles")
 SLOW_M_S = 0.1  # a bed at rest is soon as fast

@@ -11,7 +11,7 @@ from bedchain.peers.liggghts import loop_time
 from bedchain.peers.outcome import Outcome, Peer
 from bedchain.solver_process import run_logged
 
-DECK = Path("peers/in.lammps")
+DECK = Path("scripts/bedchain/peers/inputs/in.lammps")
 THERMO = re.compile(r"^Step Atoms KinEng c_height\s*\n((?:\s*\d.*\n)+)", re.MULTILINE)
 
 

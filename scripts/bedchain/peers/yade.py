@@ -10,7 +10,7 @@ from bedchain.peers.bed import Bed, write_inputs
 from bedchain.peers.outcome import Outcome, Peer
 from bedchain.solver_process import run_logged
 
-SCRIPT = Path("peers/yade_bed.py")
+SCRIPT = Path("scripts/bedchain/peers/inputs/yade_bed.py")
 NUMBERS = ("young", "poisson", "restitution", "friction", "density", "width", "gravity", "dem_step")
 
 

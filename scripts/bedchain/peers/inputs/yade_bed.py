@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """The same particles for Yade: Hertz-Mindlin contacts, spheres kept in the plane y = 0, three walls.
 
-usage: yade -n -x -j1 peers/yade_bed.py FOLDER
+usage: yade -n -x -j1 scripts/bedchain/peers/inputs/yade_bed.py FOLDER
 
 FOLDER holds particles.npy and bed.json; result.json comes into it.
 """
