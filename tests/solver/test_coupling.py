@@ -57,6 +57,25 @@ def test_ranks_agree_on_the_first_steps(make_bed, ranks):
     np.testing.assert_allclose(several["mean_height_m"], one["mean_height_m"], rtol=SOLVER_TOLERANCE)
 
 
+def test_ranks_give_the_same_statistics_later(make_bed):
+    # The paths of two runs part within tenths of a second; what they do on average does not
+    blocks = {}
+    for ranks in (1, 2):
+        folder = make_bed(f"on_{ranks}", bed={"height_m": 0.2}, time={"end_s": 2.0, "segment_s": 1.0})
+        run_dem(folder, 2.0, 1.0, ranks)
+        table = series(folder)
+        bubbling = table[table["time_s"] > 0.4]
+        block = (bubbling["time_s"] // 0.2).astype(int)
+        blocks[ranks] = bubbling.groupby(block)[["pressure_drop_Pa", "mean_height_m"]].mean()
+    one, two = blocks[1], blocks[2]
+    assert len(one) == len(two) >= 8
+    assert not np.allclose(one, two, rtol=1e-6)
+    error = np.sqrt((one.var() + two.var()) / len(one))
+    assert ((one.mean() - two.mean()).abs() < 4 * error).all()
+    # The blocks tell something: the errors are small against the means
+    assert (error < 0.1 * one.mean()).all()
+
+
 def test_a_bed_at_rest_below_fluidization_stays(make_bed):
     folder = make_bed("bed", gas={"superficial_velocity_m_s": 0.1})
     run_dem(folder, 0.02, 0.02, 1)
