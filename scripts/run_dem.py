@@ -39,7 +39,7 @@ from bedchain.segments import (
     whole_folder,
     write_record,
 )
-from bedchain.solver_process import Progress, on_ranks, run_logged
+from bedchain.solver_process import Progress, on_ranks, run_deck, run_logged
 from bedchain.trajectory import read_manifest
 
 SOLVER = Path("results/bin/bedFoam")
@@ -70,9 +70,8 @@ def settle(run: Run) -> None:
     print("run_dem: settling the particles without gas", flush=True)
     name = drum_run.FILL if drum_run.turns(run.case) else "in.settle"
     with whole_folder(run.state / run.origin) as part:
-        deck = ["liggghts", "-in", f"{DECKS}/{name}", "-log", "none", "-var", "decks", str(DECKS)]
-        variables = ["-var", "parameters", str(run.case / "parameters.lig"), "-var", "output", str(part)]
-        run_logged(on_ranks(deck + variables, run.ranks), part / "liggghts.log")
+        variables = {"decks": DECKS, "parameters": run.case / "parameters.lig", "output": part}
+        run_deck(DECKS / name, variables, part / "liggghts.log", run.ranks)
 
 
 def run_segment(run: Run, index: int, steps: tuple[int, int]) -> Segment:

@@ -332,6 +332,11 @@ def rules(finished):
         os.chdir(before)
 
 
+def script_of(rule) -> Path:
+    """The script of a rule, which it names from the folder of its own snakefile."""
+    return ROOT / "scripts" / Path(rule.script).name
+
+
 def used_names(script: Path, kind: str) -> set[str]:
     """Names that a script asks of ``snakemake.<kind>``."""
     return set(re.findall(rf"\bsnakemake\.{kind}\.(\w+)", script.read_text(encoding="utf-8")))
@@ -341,13 +346,13 @@ def test_every_script_has_the_name_of_its_rule(rules):
     without_own_name = {"build_solver", "write_parameters", "run_dem", "repeat_dem"}
     assert set(rules) == (ALL | SCORES | {"validate_bed", "write_agreement"}) - without_own_name
     for name, rule in rules.items():
-        assert rule.script == f"scripts/{name}.py"
+        assert Path(rule.script).name == f"{name}.py"
 
 
 def test_every_rule_names_the_modules_that_its_script_imports(rules):
     wrong = []
     for name, rule in rules.items():
-        imported = imported_modules(ROOT / rule.script)
+        imported = imported_modules(script_of(rule))
         assert imported, f"{rule.script} imports nothing of the library"
         given = {str(file) for file in rule.input if str(file).startswith("scripts/bedchain/")}
         if given != set(modules(*imported)):
@@ -359,7 +364,7 @@ def test_every_rule_names_the_modules_that_its_script_imports(rules):
 def test_rules_give_exactly_what_their_scripts_use(rules, kind):
     wrong = []
     for name, rule in rules.items():
-        given, used = set(getattr(rule, kind).keys()), used_names(ROOT / rule.script, kind)
+        given, used = set(getattr(rule, kind).keys()), used_names(script_of(rule), kind)
         if used != given:
             wrong.append(f"rule {name}: {used - given or 'none'} missing, {given - used or 'none'} not used")
     assert not wrong, "\n".join(wrong)

@@ -19,7 +19,7 @@ from bedchain.segments import (
     whole_folder,
     write_record,
 )
-from bedchain.solver_process import on_ranks, run_logged
+from bedchain.solver_process import run_deck
 
 FILL, TUMBLE, WALLS = "drum/in.fill", "drum/in.tumble", "drum/walls.in"
 SERIES = "bed_series.csv"
@@ -69,11 +69,8 @@ def run_segment(run: Run, index: int, steps: tuple[int, int], previous: Path, de
         "start_step": steps[0], "steps": steps[1] - steps[0],
     }  # fmt: skip
     with whole_folder(run.state / name) as part:
-        command = ["liggghts", "-in", str(decks / TUMBLE), "-log", "none"]
-        for variable, value in (given | {"output": part}).items():
-            command += ["-var", variable, str(value)]
         try:
-            run_logged(on_ranks(command, run.ranks), part / "liggghts.log")
+            run_deck(decks / TUMBLE, given | {"output": part}, part / "liggghts.log", run.ranks)
         except UserError as error:
             raise UserError(f"{error}\nlast good state: {previous / RESTART}") from None
         check_frames(part, run, steps, int(parameters["frame_steps"]), str(parameters["dump_suffix"]))

@@ -8,7 +8,7 @@ from bedchain.case_numbers import is_prime
 from bedchain.errors import UserError
 from bedchain.gas_case import copy_last_state, cut_for_ranks
 from bedchain.segments import RESTART, Run, whole_folder
-from bedchain.solver_process import on_ranks, run_logged
+from bedchain.solver_process import run_deck
 
 DECK = "in.perturb"
 PERTURBED = "perturbed"
@@ -103,6 +103,4 @@ def perturb(run: Run, segment: Path, decks: Path, seed: int, speed_m_s: float = 
             "kick_seed": seed,
             "kick_speed": speed_m_s,
         }
-        command = ["liggghts", "-in", str(decks / DECK), "-log", "none"]
-        command += [word for name, value in variables.items() for word in ("-var", name, str(value))]
-        run_logged(on_ranks(command, run.ranks), part / "liggghts.log")
+        run_deck(decks / DECK, variables, part / "liggghts.log", run.ranks)

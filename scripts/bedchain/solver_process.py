@@ -9,7 +9,7 @@ import signal
 import subprocess
 import sys
 import time
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from pathlib import Path
 
 from bedchain.errors import UserError
@@ -37,6 +37,29 @@ def solver_environment() -> dict[str, str]:
 def on_ranks(command: list[str], ranks: int) -> list[str]:
     """The command that runs `command` on so many MPI ranks."""
     return command if ranks == 1 else ["mpirun", "-np", str(ranks), *command]
+
+
+def run_deck(deck: Path, variables: Mapping[str, object], log: Path, ranks: int = 1) -> None:
+    """Run a LIGGGHTS deck to its end.
+
+    Parameters
+    ----------
+    deck : Path
+        Its input script.
+    variables : mapping of str to object
+        The deck's variables.
+    log : Path
+        Gets its output, appended.
+    ranks : int
+        MPI ranks.
+
+    Raises
+    ------
+    UserError
+        As `run_logged`.
+    """
+    given = [word for name, value in variables.items() for word in ("-var", name, str(value))]
+    run_logged(on_ranks(["liggghts", "-in", str(deck), "-log", "none", *given], ranks), log)
 
 
 def _end_with_parent() -> None:

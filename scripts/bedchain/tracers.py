@@ -6,6 +6,7 @@ of tracers with a fixed seed: repeatable, and off the expectation by what so man
 chance.
 """
 
+from abc import ABC, abstractmethod
 from collections.abc import Iterator, Sequence
 
 import numpy as np
@@ -28,7 +29,7 @@ LONG_RUN_TRACERS = 10_000
 Place = tuple[NDArray[np.float64], NDArray[np.float64]]
 
 
-class TracerChain:
+class TracerChain(ABC):
     """What position-keeping models share; each tells how its tracers go by `walk`.
 
     Attributes
@@ -56,9 +57,9 @@ class TracerChain:
     def __init__(self, name: str, grid: Grid, lag: int, lag_s: float, report: dict[str, float]) -> None:
         self.name, self.grid, self.lag, self.lag_s, self.report = name, grid, lag, lag_s, report
 
+    @abstractmethod
     def walk(self, start: Frames, steps: int, rng: np.random.Generator) -> Iterator[Place]:
         """Positions x, z [m] of every particle at steps 0 to ``steps``; the same arrays each time."""
-        raise NotImplementedError
 
     def mixing(
         self,

@@ -14,7 +14,7 @@ from bedchain.errors import UserError
 from bedchain.gas_case import prepare_gas
 from bedchain.parameters import Parameter, liggghts_text, openfoam_text, solver_parameters
 from bedchain.segments import COLUMNS, RESTART, SETTLED, STAMP_DIGITS, input_stamp, whole_folder
-from bedchain.solver_process import run_logged
+from bedchain.solver_process import run_deck, run_logged
 from bedchain.verification.particle_files import write_particles
 
 DECKS = Path("liggghts_inputs")
@@ -150,10 +150,8 @@ def _write_parameters(bed: Bed, folder: Path, frame_steps: int) -> Path:
 def _settle(bed: Bed, folder: Path) -> None:
     """Let the particles fall and come to rest."""
     parameters = _write_parameters(bed, folder, int(bed.value("settle_steps")))
-    command = ["liggghts", "-in", str(DECKS / "in.settle"), "-log", "none"]
-    for name, value in {"parameters": parameters, "output": folder, "decks": DECKS}.items():
-        command += ["-var", name, str(value)]
-    run_logged(command, folder / "liggghts.log")
+    variables = {"parameters": parameters, "output": folder, "decks": DECKS}
+    run_deck(DECKS / "in.settle", variables, folder / "liggghts.log")
 
 
 def _moving_particles(bed: Bed, settled: Path, folder: Path, solver: Path, start_s: float) -> np.ndarray:

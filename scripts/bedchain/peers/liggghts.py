@@ -7,7 +7,7 @@ from pathlib import Path
 from bedchain.errors import UserError
 from bedchain.peers.bed import DECKS, OWN_DECKS, Bed, write_inputs
 from bedchain.peers.outcome import Outcome, Peer
-from bedchain.solver_process import run_logged
+from bedchain.solver_process import run_deck
 from bedchain.verification.particle_files import read_frames
 
 LOOP = re.compile(r"^Loop time of (\S+) on \d+ procs for (\d+) steps with (\d+) atoms", re.MULTILINE)
@@ -39,10 +39,7 @@ def run(bed: Bed, folder: Path, duration_s: float) -> Outcome:
         "decks": DECKS,
         "steps": steps,
     }
-    command = ["liggghts", "-in", str(DECKS / "verify/in.contact"), "-log", "none"]
-    for name, value in values.items():
-        command += ["-var", name, str(value)]
-    run_logged(command, folder / "liggghts.log")
+    run_deck(DECKS / "verify/in.contact", values, folder / "liggghts.log")
     wall, done, particles = loop_time(folder / "liggghts.log")
     height = float(read_frames(folder)[-1][:, 2].mean())
     return Outcome(done * bed.value("dem_step"), wall, particles, done, height)

@@ -13,7 +13,7 @@ import yaml
 from bedchain.case import load_case, load_schema
 from bedchain.parameters import Parameter, liggghts_text, openfoam_text, solver_parameters
 from bedchain.segments import read_parameters
-from bedchain.solver_process import run_logged
+from bedchain.solver_process import run_deck, run_logged
 from bedchain.verification.laws import Suspension
 from bedchain.verification.particle_files import read_frames, write_particles
 
@@ -111,10 +111,7 @@ def run_particles(setup: Setup, duration_s: float) -> np.ndarray:
         "output": setup.folder,
         "steps": round(duration_s / parameters["dem_step"]),
     }
-    command = ["liggghts", "-in", str(DECKS / "verify/in.contact"), "-log", "none"]
-    for name, value in values.items():
-        command += ["-var", name, str(value)]
-    run_logged(command, setup.folder / "liggghts.log")
+    run_deck(DECKS / "verify/in.contact", values, setup.folder / "liggghts.log")
     return read_frames(setup.folder)
 
 

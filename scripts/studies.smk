@@ -1,0 +1,186 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+# The studies, each a target of its own beside the pipeline of the Snakefile, whose names they use:
+#   verify    the solvers against theory                 peers    bedFoam beside other codes
+#   validate  a case against its measured profiles       scores   all chains, chosen by validation, tested once
+SCORE_PLOTS = ["fig_pareto", "fig5_best", "fig_autocorrelation", "fig_distribution_best"]
+
+
+# The solvers against theory, on small cases that no case file touches: snakemake --cores 2 verify
+rule verify:
+    input:
+        "results/verify/verification.csv",
+
+
+rule verify_solver:
+    input:
+        modules("case", "dumps", "errors", "figures", "gas_field", "parameters", "segments", "solver_process"),
+        modules("slab", "stage"),
+        source_files("scripts/bedchain/verification", "*.py"),
+        schema="cases/case.schema.yaml",
+        solver=rules.build_solver.output.solver,
+        decks=source_files("liggghts_inputs", "verify/in.*", "include/*.in"),
+        gas=source_files("openfoam_case", "0.orig/*", "constant/*", "system/*"),
+    output:
+        table="results/verify/verification.csv",
+        figures=directory("results/verify/figures"),
+    log:
+        "logs/verify_solver.log",
+    benchmark:
+        "benchmarks/verify_solver.tsv"
+    conda:
+        "../envs/python.yaml"
+    params:
+        folder=subpath(output.table, parent=True),
+    shell:
+        "python scripts/verify_solver.py --solver {input.solver} --folder {params.folder} 2>&1 | tee {log} >&2"
+
+
+# bedFoam beside other codes on the same beds: snakemake --cores 2 peers --config peers='{repeats: 5, beds: paper}'
+rule peers:
+    input:
+        "results/peers/peers.csv",
+
+
+# Alone on the machine, since it measures times. Its finished runs are kept in results/peers/<bed>/.
+rule compare_peers:
+    input:
+        modules("case", "dumps", "errors", "figures", "gas_case", "parameters", "provenance", "segments"),
+        modules("solver_process", "stage"),
+        source_files("scripts/bedchain/peers", "*.py"),
+        source_files("scripts/bedchain/peers/inputs", "*"),
+        "scripts/bedchain/verification/particle_files.py",
+        solver=rules.build_solver.output.solver,
+        decks=source_files("liggghts_inputs", "in.*", "include/*.in"),
+        gas=source_files("openfoam_case", "0.orig/*", "constant/*", "system/*"),
+    output:
+        table="results/peers/peers.csv",
+        ratios="results/peers/ratios.csv",
+        text="results/peers/peers.md",
+        figure=multiext("results/peers/figures/peers", ".png", ".pdf"),
+    log:
+        "logs/compare_peers.log",
+    conda:
+        "../envs/python.yaml"
+    threads: workflow.cores or 1
+    params:
+        folder=subpath(output.table, parent=True),
+        options=" ".join(f"--{key} {value}" for key, value in config.get("peers", {}).items()),
+    shell:
+        "python scripts/compare_peers.py --solver {input.solver} --folder {params.folder} {params.options}"
+        " 2>&1 | tee {log} >&2"
+
+
+# Against measured profiles, where a case has them: snakemake --cores 2 --config case=mueller validate
+rule validate:
+    input:
+        f"{RESULTS}/validation.csv",
+
+
+rule validate_bed:
+    input:
+        modules("figures", "frames", "stage", "trajectory", "validation"),
+        **TRAJECTORY,
+        points=f"cases/{NAME}/measured.csv",
+    output:
+        multiext(f"{FIGURES}/fig_validation", **FORMS),
+        table=f"{RESULTS}/validation.csv",
+        metrics=f"{RESULTS}/validation_metrics.csv",
+    log:
+        f"{LOGS}/validate_bed.log",
+    conda:
+        "../envs/python.yaml"
+    params:
+        **pick(CASE, "bed.width_m", "bed.thickness_m", "particles.diameter_m"),
+        **pick(CASE, "figures.resolution_dpi"),
+        start_s=CASE["learning"]["start_s"],
+        end_s=CASE["comparison"]["end_s"],
+    script:
+        "validate_bed.py"
+
+
+# Every model chosen by validation inside the learning window and tested once: snakemake --cores 2 scores
+rule scores:
+    input:
+        expand(f"{RESULTS}/{{name}}.csv", name=["scores", "selection"]),
+        expand(f"{FIGURES}/{{name}}{{form}}", name=SCORE_PLOTS, form=FORMS.values()),
+
+
+rule score_models:
+    input:
+        modules("candidates", "comparison", "errors", "frames", "grid", "held_out", "kept", "lagrangian"),
+        modules("model_styles", "models", "regrid", "runs", "score_rows", "selection", "stage", "starts"),
+        modules("storage", "trial"),
+        **TRAJECTORY,
+        # an archive keeps the repeats' curves, not their positions
+        repeats=expand(f"{RESULTS}/repeats/{{repeat}}/trajectory.npy", repeat=[] if REFERENCE else REPEATS),
+    output:
+        scores=f"{RESULTS}/scores.csv",
+        selection=f"{RESULTS}/selection.csv",
+        mixing=f"{RESULTS}/scores_mixing.csv",
+        lagrangian=f"{RESULTS}/scores_lagrangian.csv",
+        best=f"{RESULTS}/scores_best.npz",
+    log:
+        f"{LOGS}/score_models.log",
+    benchmark:
+        f"{BENCHMARKS}/score_models.tsv"
+    conda:
+        "../envs/python.yaml"
+    params:
+        **pick(CASE, "cells", "chain.lag_s", "chain.estimator", "chain.seed", "mixing"),
+        **pick(CASE, "particles.diameter_m", "figures.batch_height_m", "figures.moments_s"),
+        learning=CASE["learning"],
+        comparison=pick(CASE, "comparison.start_s", "comparison.end_s"),
+    script:
+        "score_models.py"
+
+
+rule plot_pareto:
+    input:
+        modules("errors", "figures", "model_styles", "stage"),
+        scores=rules.score_models.output.scores,
+        selection=rules.score_models.output.selection,
+    output:
+        multiext(f"{FIGURES}/fig_pareto", **FORMS),
+    log:
+        f"{LOGS}/plot_pareto.log",
+    conda:
+        "../envs/python.yaml"
+    params:
+        **pick(CASE, "figures.resolution_dpi"),
+        baseline_lag_s=CASE["chain"]["lag_s"],
+        baseline_cell_m=CASE["bed"]["width_m"] / CASE["cells"]["columns"],
+    script:
+        "plot_pareto.py"
+
+
+rule plot_best_mixing:
+    input:
+        modules("errors", "figures", "model_styles", "stage"),
+        mixing=rules.score_models.output.mixing,
+        selection=rules.score_models.output.selection,
+    output:
+        multiext(f"{FIGURES}/fig5_best", **FORMS),
+    log:
+        f"{LOGS}/plot_best_mixing.log",
+    conda:
+        "../envs/python.yaml"
+    params:
+        **pick(CASE, "figures.resolution_dpi", "figures.dem_colour", "figures.static_colour"),
+    script:
+        "plot_best_mixing.py"
+
+
+rule plot_autocorrelation:
+    input:
+        modules("errors", "figures", "model_styles", "stage"),
+        lagrangian=rules.score_models.output.lagrangian,
+    output:
+        multiext(f"{FIGURES}/fig_autocorrelation", **FORMS),
+    log:
+        f"{LOGS}/plot_autocorrelation.log",
+    conda:
+        "../envs/python.yaml"
+    params:
+        **pick(CASE, "figures.resolution_dpi", "figures.dem_colour"),
+    script:
+        "plot_autocorrelation.py"
