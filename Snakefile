@@ -1,10 +1,11 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 # The whole pipeline of one case, in its order: particles and gas, cells, chains, comparison, figures.
-#   snakemake --cores 2                        the case `short`
-#   snakemake --cores 2 --config case=paper    another case of cases/
-#   ... reference=simulate                     not from the archive cases/<case>/reference/, but by the solvers
+#   snakemake --cores 2                        the case `short`, simulated, and `paper`, from its archive
+#   snakemake --cores 2 --config case=mueller  one case of cases/
+#   ... --config reference=simulate            not from the archive cases/<case>/reference/, but by the solvers
 # A rule gets only the keys of the case that it needs: what a changed key does not touch does not run again.
 import sys
+from pathlib import Path
 
 sys.path.insert(0, f"{workflow.basedir}/scripts")
 
@@ -15,6 +16,7 @@ from bedchain.workflow import solver_values, source_files, table_values
 NAME = config.get("case", "short")
 CASE = case_or_exit(NAME)
 REFERENCE = reference_or_exit(config.get("reference"), NAME, CASE)
+WITH_PAPER = "case" not in config and Path("cases/paper/reference").exists()
 RESULTS = f"results/{NAME}"
 FIGURES = f"results/{NAME}/figures"
 LOGS = f"logs/{NAME}"
@@ -23,6 +25,7 @@ MODELS = CASE["chain"]["models"]
 REPEATS = range(1, CASE["comparison"]["repeats"] + 1)
 OPTIONS = {model: CASE["chain"].get(model, {}) for model in MODELS}
 FORMS = {form: f".{form}" for form in ["png", "pdf", "csv"]}
+SOLVER = "results/bin/bedFoam"
 # the bed that all is made of, simulated or out of its archive
 RUN = {"dem": f"{RESULTS}/dem.json", "bed_series": f"{RESULTS}/bed_series.csv"}
 TRAJECTORY = {"trajectory": f"{RESULTS}/trajectory.npy", "metadata": f"{RESULTS}/trajectory.json"}
@@ -48,6 +51,7 @@ PLOTS = [
 
 rule all:
     input:
+        (lambda wildcards: rules.paper_all.input) if WITH_PAPER else [],
         expand(f"{FIGURES}/{{name}}{{form}}", name=PLOTS, form=FORMS.values()),
         f"{FIGURES}/film.mp4",
         expand(
@@ -71,7 +75,7 @@ rule build_solver:
         script="openfoam_case/solver/build.sh",
         sources=source_files("openfoam_case/solver", "*.C", "*.H"),
     output:
-        solver="results/bin/bedFoam",
+        solver=SOLVER,
     log:
         "logs/build_solver.log",
     conda:
@@ -121,7 +125,7 @@ rule audit_scene:
 rule run_dem:
     input:
         rules.write_parameters.output,
-        solver=rules.build_solver.output.solver if GAS else [],
+        solver=SOLVER if GAS else [],
         decks=["liggghts_inputs/in.settle", "liggghts_inputs/in.fluidize"] if GAS else source_files(DRUM, "*"),
         blocks=source_files("liggghts_inputs/include", "*.in"),
         gas=source_files("openfoam_case", "0.orig/*", "constant/*", "system/*") if GAS else [],
@@ -147,7 +151,7 @@ rule repeat_dem:
     input:
         rules.write_parameters.output,
         dem=RUN["dem"],
-        solver=rules.build_solver.output.solver,
+        solver=SOLVER,
         decks=["liggghts_inputs/in.perturb", "liggghts_inputs/in.fluidize"],
         blocks=source_files("liggghts_inputs/include", "*.in"),
     output:
@@ -674,4 +678,18 @@ rule write_provenance:
         "scripts/write_provenance.py"
 
 
-include: "scripts/studies.smk"
+# The paper's bed by the same rules, named paper_*; the studies and the solver are those of this run.
+if WITH_PAPER:
+
+    module paper:
+        snakefile:
+            "Snakefile"
+        config:
+            {**config, "case": "paper", "studies": False}
+
+    use rule * from paper exclude build_solver as paper_*
+
+
+if config.get("studies", True):
+
+    include: "scripts/studies.smk"

@@ -21,7 +21,7 @@ from bedchain.storage import write_arrays
 # a moment lies on a step up to round-off of the division
 STEP_TOLERANCE = 1e-6
 # chains that are learned again for the error bars
-REPLICATES = 100
+REPLICATES = 40
 
 
 def run_chain(

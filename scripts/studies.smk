@@ -17,7 +17,7 @@ rule verify_solver:
         modules("slab", "stage"),
         source_files("scripts/bedchain/verification", "*.py"),
         schema="cases/case.schema.yaml",
-        solver=rules.build_solver.output.solver,
+        solver=SOLVER,
         decks=source_files("liggghts_inputs", "verify/in.*", "include/*.in"),
         gas=source_files("openfoam_case", "0.orig/*", "constant/*", "system/*"),
     output:
@@ -49,7 +49,7 @@ rule compare_peers:
         source_files("scripts/bedchain/peers", "*.py"),
         source_files("scripts/bedchain/peers/inputs", "*"),
         "scripts/bedchain/verification/particle_files.py",
-        solver=rules.build_solver.output.solver,
+        solver=SOLVER,
         decks=source_files("liggghts_inputs", "in.*", "include/*.in"),
         gas=source_files("openfoam_case", "0.orig/*", "constant/*", "system/*"),
     output:

@@ -48,16 +48,16 @@ SCORES = {"score_models", "plot_pareto", "plot_best_mixing", "plot_autocorrelati
 WHOLE_BED = {"plot_snapshot"}  # needs particles and gas, no cells
 
 
-def snakemake(folder: Path, *arguments: str) -> subprocess.CompletedProcess[str]:
+def snakemake(folder: Path, *arguments: str, config: str = "case=short") -> subprocess.CompletedProcess[str]:
     """Run snakemake in a folder; its own caches stay in there."""
-    command = [sys.executable, "-m", "snakemake", "--cores", "2", *arguments]
+    command = [sys.executable, "-m", "snakemake", "--cores", "2", *arguments, "--config", *config.split()]
     environment = os.environ | {"XDG_CACHE_HOME": str(folder / ".cache"), "PYTHONDONTWRITEBYTECODE": "1"}
     return subprocess.run(command, cwd=folder, env=environment, capture_output=True, text=True, check=False)
 
 
-def planned(folder: Path, *arguments: str) -> dict[str, int]:
+def planned(folder: Path, *arguments: str, config: str = "case=short") -> dict[str, int]:
     """Rules that a dry run would run, with the number of their jobs."""
-    done = snakemake(folder, "--dry-run", *arguments)
+    done = snakemake(folder, "--dry-run", *arguments, config=config)
     assert done.returncode == 0, done.stdout + done.stderr
     rules = re.findall(r"^(?:local)?rule (\w+):$", done.stdout + done.stderr, re.M)
     return {rule: rules.count(rule) for rule in rules if rule != "all"}
@@ -69,8 +69,10 @@ def finished(tmp_path_factory):
     folder = tmp_path_factory.mktemp("finished")
     for name in COPIED:
         (folder / name).parent.mkdir(parents=True, exist_ok=True)
-        copy = shutil.copytree if (ROOT / name).is_dir() else shutil.copy2
-        copy(ROOT / name, folder / name)
+        if (ROOT / name).is_dir():
+            shutil.copytree(ROOT / name, folder / name, ignore=shutil.ignore_patterns("reference"))
+        else:
+            shutil.copy2(ROOT / name, folder / name)
     summary = snakemake(folder, "--summary")
     assert summary.returncode == 0, summary.stderr
     for line in summary.stdout.splitlines()[1:]:
@@ -138,21 +140,30 @@ def with_archive(finished, tmp_path):
         (tmp_path / name).symlink_to(finished / name)
     (tmp_path / "cases").unlink()
     shutil.copytree(finished / "cases", tmp_path / "cases")
-    case = load_case(tmp_path / "cases" / "short" / "case.yaml")
-    found = {
-        "solver_keys": solver_keys(case, load_schema()), "start_s": 1.5, "end_s": 5.5, "history_s": 0.25,
-        "n_frames": 171, "level_m": 1e-3, "repeats": 3, "files": {},
-    }  # fmt: skip
-    (tmp_path / "cases" / "short" / "reference").mkdir()
-    (tmp_path / "cases" / "short" / "reference" / "provenance.json").write_text(json.dumps(found))
+    for name, start_s, end_s, frames in (("short", 1.5, 5.5, 171), ("paper", 10.0, 20.0, 411)):
+        case = load_case(tmp_path / "cases" / name / "case.yaml")
+        found = {
+            "solver_keys": solver_keys(case, load_schema()), "start_s": start_s, "end_s": end_s,
+            "history_s": 0.25, "n_frames": frames, "level_m": 1e-3, "repeats": 3, "files": {},
+        }  # fmt: skip
+        (tmp_path / "cases" / name / "reference").mkdir()
+        (tmp_path / "cases" / name / "reference" / "provenance.json").write_text(json.dumps(found))
     return tmp_path
+
+
+def test_without_a_case_the_short_bed_is_simulated_and_the_paper_s_unpacked(with_archive):
+    shutil.rmtree(with_archive / "cases" / "short" / "reference")
+    jobs = planned(with_archive, config="")
+    archived = {rule.removeprefix("paper_") for rule in jobs if rule.startswith("paper_")}
+    assert {rule for rule in jobs if not rule.startswith("paper_")} == ALL
+    assert archived == ALL - (PARTICLES - AUDIT) | {"unpack_reference", "write_agreement"}
 
 
 def test_an_archived_bed_is_unpacked_and_no_solver_runs(with_archive):
     jobs = planned(with_archive)
     assert set(jobs) == ALL - (PARTICLES - AUDIT) | {"unpack_reference"}
     assert jobs["unpack_reference"] == 1
-    assert set(planned(with_archive, "--config", "reference=simulate")) == ALL
+    assert set(planned(with_archive, config="case=short reference=simulate")) == ALL
 
 
 def test_what_the_archive_cannot_serve_stops_before_anything(with_archive):
@@ -161,10 +172,10 @@ def test_what_the_archive_cannot_serve_stops_before_anything(with_archive):
     file.write_text(text.replace("columns: 10", "columns: 12"), encoding="utf-8")
     done = snakemake(with_archive, "--dry-run")
     assert done.returncode != 0 and "cells.columns 12" in done.stderr and "divisor of 100" in done.stderr
-    done = snakemake(with_archive, "--dry-run", "--config", "reference=simulated")
+    done = snakemake(with_archive, "--dry-run", config="case=short reference=simulated")
     assert done.returncode != 0 and "take archive or simulate" in done.stderr
     shutil.rmtree(with_archive / "cases" / "short" / "reference")
-    done = snakemake(with_archive, "--dry-run", "--config", "reference=archive")
+    done = snakemake(with_archive, "--dry-run", config="case=short reference=archive")
     assert done.returncode != 0 and "short has no archive" in done.stderr
     assert "Traceback" not in done.stderr and not (with_archive / "results").exists()
 
@@ -173,7 +184,7 @@ def test_a_scene_without_gas_asks_for_nothing_of_openfoam(finished, tmp_path):
     for name in set(COPIED) - {"openfoam_case"}:
         (tmp_path / name).parent.mkdir(parents=True, exist_ok=True)
         (tmp_path / name).symlink_to(finished / name)
-    jobs = planned(tmp_path, "--config", "case=drum")
+    jobs = planned(tmp_path, config="case=drum")
     assert set(jobs) == ALL - {"build_solver", "plot_snapshot", "repeat_dem", "measure_mixing"}
 
 
@@ -314,7 +325,7 @@ def test_a_seed_that_is_no_prime_stops_before_anything(finished, results):
 
 
 def test_an_unknown_case_is_told_the_known_ones(finished):
-    done = snakemake(finished, "--config", "case=shorter")
+    done = snakemake(finished, config="case=shorter")
     assert done.returncode != 0
     assert "there is no case 'shorter'" in done.stderr and "mueller, paper, short" in done.stderr
 

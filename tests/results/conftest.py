@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Artefacts of a case that was run before: ``short``, or the one that BEDCHAIN_CASE names."""
+"""Artefacts of the cases that were run before: ``short`` and ``paper``, or those that BEDCHAIN_CASE names."""
 
 import os
 from pathlib import Path
@@ -10,25 +10,25 @@ import pytest
 from bedchain.case import load_case
 
 ROOT = Path(__file__).parents[2]
-NAME = os.environ.get("BEDCHAIN_CASE", "short")
+NAMES = os.environ.get("BEDCHAIN_CASE", "short paper").split()
 
 
-@pytest.fixture(scope="session")
-def case():
-    """The case, with its defaults."""
-    return load_case(ROOT / "cases" / NAME / "case.yaml")
-
-
-@pytest.fixture(scope="session")
-def case_folder():
+@pytest.fixture(scope="session", params=NAMES)
+def case_folder(request):
     """Where the case is described."""
-    return ROOT / "cases" / NAME
+    return ROOT / "cases" / request.param
 
 
 @pytest.fixture(scope="session")
-def results():
+def case(case_folder):
+    """The case, with its defaults."""
+    return load_case(case_folder / "case.yaml")
+
+
+@pytest.fixture(scope="session")
+def results(case_folder):
     """Where the case's artefacts are."""
-    return ROOT / "results" / NAME
+    return ROOT / "results" / case_folder.name
 
 
 @pytest.fixture(scope="session")
