@@ -112,7 +112,7 @@ rule score_models:
         modules("storage", "trial"),
         **TRAJECTORY,
         # an archive keeps the repeats' curves, not their positions
-        repeats=expand(f"{RESULTS}/repeats/{{repeat}}/trajectory.npy", repeat=[] if REFERENCE else REPEATS),
+        repeats=expand(f"{BED}/repeats/{{repeat}}/trajectory.npy", repeat=[] if REFERENCE else REPEATS),
     output:
         scores=f"{RESULTS}/scores.csv",
         selection=f"{RESULTS}/selection.csv",
