@@ -10,7 +10,7 @@ import sys
 sys.path.insert(0, f"{workflow.basedir}/scripts")
 
 from bedchain.parameters import weight_per_area
-from bedchain.workflow import case_or_exit, cell_size, modules, pick, reference_or_exit
+from bedchain.workflow import case_or_exit, cell_size, dated, modules, pick, reference_or_exit
 from bedchain.workflow import solver_values, source_files, table_values
 
 NAME = config.get("case", "short")

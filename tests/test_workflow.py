@@ -190,6 +190,13 @@ def test_a_preset_makes_chains_of_its_own_from_the_bed_that_is_there(with_preset
     assert set(planned(with_preset)) == made - WHOLE_BED - AUDIT
 
 
+def test_an_estimate_makes_nothing_else(finished, tmp_path):
+    for name in COPIED:
+        (tmp_path / name).parent.mkdir(parents=True, exist_ok=True)
+        (tmp_path / name).symlink_to(finished / name)
+    assert planned(tmp_path, "estimate") == {"estimate": 1, "estimate_cost": 1}
+
+
 def test_a_scene_without_gas_asks_for_nothing_of_openfoam(finished, tmp_path):
     for name in set(COPIED) - {"openfoam_case"}:
         (tmp_path / name).parent.mkdir(parents=True, exist_ok=True)
@@ -365,7 +372,9 @@ def used_names(script: Path, kind: str) -> set[str]:
 
 def test_every_script_has_the_name_of_its_rule(rules):
     without_own_name = {"build_solver", "write_parameters", "run_dem", "repeat_dem"}
-    assert set(rules) == (ALL | SCORES | {"validate_bed", "write_agreement"}) - without_own_name
+    assert (
+        set(rules) == (ALL | SCORES | {"validate_bed", "write_agreement", "estimate_cost"}) - without_own_name
+    )
     for name, rule in rules.items():
         assert Path(rule.script).name == f"{name}.py"
 

@@ -127,12 +127,12 @@ def with_preset(case: Case, preset: Preset, file: Path = PRESETS) -> Case:
         The preset does not go with the case.
     """
     lag_s = _lag(case, preset.lag_s)
-    columns, rows = (_cells(case, preset.cell_m, *names) for names in (
-        ("columns", "width_m", "split_x_m"), ("rows", "height_m", "split_z_m"),
-    ))  # fmt: skip
+    bed, cells, lines, diameter = case["bed"], case["cells"], case["mixing"], case["particles"]["diameter_m"]
+    columns = count_near(bed["width_m"], preset.cell_m, lines["split_x_m"], cells["columns"], diameter)
+    rows = count_near(bed["height_m"], preset.cell_m, lines["split_z_m"], cells["rows"], diameter)
     steps = sorted({max(1, round(moment / lag_s)) for moment in case["figures"]["moments_s"]})
     changed = case | {
-        "cells": case["cells"] | {"columns": columns, "rows": rows},
+        "cells": cells | {"columns": columns, "rows": rows},
         "chain": case["chain"] | {"lag_s": lag_s, "models": [preset.model]},
         "figures": case["figures"] | {"moments_s": [float(step * ratio(lag_s, 1.0)) for step in steps]},
     }
@@ -162,20 +162,32 @@ def is_positive(value: Any) -> bool:
     return isinstance(value, int | float) and not isinstance(value, bool) and value > 0
 
 
-def _cells(case: Case, wanted_m: float, key: str, size: str, line: str) -> int:
-    """Cells along one side of the bed."""
-    length, diameter = case["bed"][size], case["particles"]["diameter_m"]
-    levels = ratio(length, LEVEL_DIAMETERS * diameter)
-    border = ratio(case["mixing"][line], length)
-    kept = (border * case["cells"][key]).denominator == 1
+def count_near(length_m: float, wanted_m: float, line_m: float, own: int, diameter_m: float) -> int:
+    """Cells along one side of the bed whose size is as near as may be to the one wanted, by its logarithm.
+
+    Parameters
+    ----------
+    length_m, wanted_m : float
+        Of the bed and of a cell [m].
+    line_m : float
+        Line between two groups [m]: where it is a border of the case's own cells, it stays one.
+    own : int
+        Cells of the case [1].
+    diameter_m : float
+        Of a particle: no cell is smaller; where half of it divides the bed, each cell is whole halves [m].
+
+    Returns
+    -------
+    int
+    """
+    levels, border = ratio(length_m, LEVEL_DIAMETERS * diameter_m), ratio(line_m, length_m)
+    kept = (border * own).denominator == 1
     counts: list[int] = [
         count
-        for count in range(1, int(ratio(length, diameter)) + 1)
+        for count in range(1, int(ratio(length_m, diameter_m)) + 1)
         if (levels.denominator > 1 or levels % count == 0) and not (kept and (border * count).denominator > 1)
     ]
-    return min(
-        counts or [int(case["cells"][key])], key=lambda count: abs(math.log(length / count / wanted_m))
-    )
+    return min(counts or [own], key=lambda count: abs(math.log(length_m / count / wanted_m)))
 
 
 def _lag(case: Case, wanted_s: float) -> float:

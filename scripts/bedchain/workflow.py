@@ -180,6 +180,24 @@ def imported_modules(file: Path) -> list[str]:
     return sorted({name.split(".")[1] for name in names if name.startswith("bedchain.")})
 
 
+def dated(*patterns: str) -> dict[str, int]:
+    """Files that match any of the patterns, with their times: so a rule sees that one changed.
+
+    Parameters
+    ----------
+    *patterns : str
+        Relative to the repository, such as ``"results/*/dem.json"``.
+
+    Returns
+    -------
+    dict
+        Path -> time of its last change [ns].
+    """
+    return {
+        str(file): file.stat().st_mtime_ns for pattern in patterns for file in sorted(Path().glob(pattern))
+    }
+
+
 def source_files(folder: str, *patterns: str) -> list[str]:
     """Files below a folder whose names match any of the patterns, sorted, without links that builds make.
 
