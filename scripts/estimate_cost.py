@@ -13,6 +13,13 @@ from bedchain.outcome import FACTOR_AIM, compared, happened, outside
 from bedchain.rates import bed_of, calibrate
 from bedchain.stage import LOG, complete, stage, write_csv
 
+UNITS = {"wall_s": "s", "memory_mb": "MB", "disk_mb": "MB on disk", "error_floors": "noise floors"}
+SHOWN = {
+    **{name: ("estimated", unit) for name, unit in UNITS.items()},
+    **{f"happened_{name}": ("came true", unit) for name, unit in UNITS.items()},
+    "done_1": ("share", "done"),
+    "ratio_1": ("ratio", "of times"),
+}
 BUSY_CORES = 0.5  # other programs that keep more of the machine busy are worth a word
 
 
@@ -65,10 +72,11 @@ def header(case: Case, source: str) -> list[str]:
 
 
 def lines(table: pd.DataFrame) -> str:
-    """The table with short numbers, and nothing where nothing is known."""
-    return table.map(
-        lambda value: "" if pd.isna(value) else f"{value:,.3g}" if value < 100 else f"{value:,.0f}"
-    ).to_string()
+    """The table with short numbers, without columns of which nothing is known."""
+    known = table.dropna(axis="columns", how="all")
+    short = known.map(lambda value: "" if pd.isna(value) else f"{value:,.{0 if value >= 100 else 2}f}")
+    short.columns = pd.MultiIndex.from_tuples([SHOWN[name] for name in known.columns])
+    return short.rename_axis(None).to_string()
 
 
 if "snakemake" in globals():
