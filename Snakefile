@@ -3,6 +3,7 @@
 #   snakemake --cores 2                        the case `short`, simulated, and `paper`, from its archive
 #   snakemake --cores 2 --config case=mueller  one case of cases/
 #   ... --config reference=simulate            not from the archive cases/<case>/reference/, but by the solvers
+#   ... --config fidelity=fast                 chains of a preset of cases/presets.yaml, into results/<case>-fast
 # A rule gets only the keys of the case that it needs: what a changed key does not touch does not run again.
 import sys
 from pathlib import Path
@@ -10,27 +11,31 @@ from pathlib import Path
 sys.path.insert(0, f"{workflow.basedir}/scripts")
 
 from bedchain.parameters import weight_per_area
-from bedchain.workflow import case_or_exit, cell_size, modules, pick, reference_or_exit
+from bedchain.workflow import case_or_exit, cell_size, dated, modules, pick, reference_or_exit
 from bedchain.workflow import solver_values, source_files, table_values
 
 NAME = config.get("case", "short")
-CASE = case_or_exit(NAME)
+FIDELITY = config.get("fidelity")
+CASE = case_or_exit(NAME, FIDELITY)
 REFERENCE = reference_or_exit(config.get("reference"), NAME, CASE)
 WITH_PAPER = "case" not in config and Path("cases/paper/reference").exists()
-RESULTS = f"results/{NAME}"
-FIGURES = f"results/{NAME}/figures"
-LOGS = f"logs/{NAME}"
-BENCHMARKS = f"benchmarks/{NAME}"
+MADE = f"{NAME}-{FIDELITY}" if FIDELITY else NAME
+RESULTS = f"results/{MADE}"
+FIGURES = f"results/{MADE}/figures"
+LOGS = f"logs/{MADE}"
+BENCHMARKS = f"benchmarks/{MADE}"
 MODELS = CASE["chain"]["models"]
 REPEATS = range(1, CASE["comparison"]["repeats"] + 1)
 OPTIONS = {model: CASE["chain"].get(model, {}) for model in MODELS}
 FORMS = {form: f".{form}" for form in ["png", "pdf", "csv"]}
 SOLVER = "results/bin/bedFoam"
-# the bed that all is made of, simulated or out of its archive
-RUN = {"dem": f"{RESULTS}/dem.json", "bed_series": f"{RESULTS}/bed_series.csv"}
-TRAJECTORY = {"trajectory": f"{RESULTS}/trajectory.npy", "metadata": f"{RESULTS}/trajectory.json"}
+# the bed that all is made of, simulated or out of its archive: one for all presets
+BED = f"results/{NAME}"
+RUN = {"dem": f"{BED}/dem.json", "bed_series": f"{BED}/bed_series.csv"}
+TRAJECTORY = {"trajectory": f"{BED}/trajectory.npy", "metadata": f"{BED}/trajectory.json"}
 CHAIN_FILES = {"best": "scores_best"}
 GAS = CASE["gas"]["model"] != "none"  # without it nothing of OpenFOAM is built or run
+CLAIMS = source_files(f"cases/{NAME}", "claims.csv")  # about both chains of the paper
 DRUM = "liggghts_inputs/drum"
 AUDITED = ["bed", "particles", "contact", "gas", "drum"]
 MODEL_FIGURES = {"static": "fig3_static", "dynamic": "fig4_dynamic"}
@@ -65,7 +70,7 @@ rule all:
                 "table1.csv",
                 "audit.csv",
                 "provenance.json",
-                *(["agreement.csv"] if source_files(f"cases/{NAME}", "claims.csv") else []),
+                *(["agreement.csv"] if CLAIMS and {*MODEL_FIGURES} <= {*MODELS} else []),
             ],
         ),
 
@@ -90,8 +95,8 @@ rule write_parameters:
     input:
         case=ancient(f"cases/{NAME}/case.yaml"),
     output:
-        liggghts=f"{RESULTS}/parameters.lig",
-        openfoam=f"{RESULTS}/caseParameters",
+        liggghts=f"{BED}/parameters.lig",
+        openfoam=f"{BED}/caseParameters",
     log:
         f"{LOGS}/write_parameters.log",
     conda:
@@ -155,8 +160,8 @@ rule repeat_dem:
         decks=["liggghts_inputs/in.perturb", "liggghts_inputs/in.fluidize"],
         blocks=source_files("liggghts_inputs/include", "*.in"),
     output:
-        dem=f"{RESULTS}/repeats/{{repeat}}/dem.json",
-        bed_series=f"{RESULTS}/repeats/{{repeat}}/bed_series.csv",
+        dem=f"{BED}/repeats/{{repeat}}/dem.json",
+        bed_series=f"{BED}/repeats/{{repeat}}/bed_series.csv",
     log:
         f"{LOGS}/repeat_dem_{{repeat}}.log",
     benchmark:
@@ -176,10 +181,10 @@ rule repeat_dem:
 rule parse_dumps:
     input:
         modules("stage", "trajectory"),
-        dem=f"{RESULTS}/{{run}}dem.json",
+        dem=f"{BED}/{{run}}dem.json",
     output:
-        trajectory=f"{RESULTS}/{{run}}trajectory.npy",
-        metadata=f"{RESULTS}/{{run}}trajectory.json",
+        trajectory=f"{BED}/{{run}}trajectory.npy",
+        metadata=f"{BED}/{{run}}trajectory.json",
     log:
         f"{LOGS}/{{run}}parse_dumps.log",
     benchmark:
@@ -197,10 +202,10 @@ rule parse_dumps:
 rule measure_mixing:
     input:
         modules("comparison", "frames", "mixing", "stage", "trajectory"),
-        trajectory=f"{RESULTS}/repeats/{{repeat}}/trajectory.npy",
-        metadata=f"{RESULTS}/repeats/{{repeat}}/trajectory.json",
+        trajectory=f"{BED}/repeats/{{repeat}}/trajectory.npy",
+        metadata=f"{BED}/repeats/{{repeat}}/trajectory.json",
     output:
-        mixing=f"{RESULTS}/repeats/{{repeat}}/mixing.csv",
+        mixing=f"{BED}/repeats/{{repeat}}/mixing.csv",
     log:
         f"{LOGS}/measure_mixing_{{repeat}}.log",
     conda:
@@ -225,7 +230,7 @@ if REFERENCE:
         output:
             **TRAJECTORY,
             **RUN,
-            gas=f"{RESULTS}/gas.npz",
+            gas=f"{BED}/gas.npz",
             repeats=expand(rules.measure_mixing.output.mixing, repeat=REPEATS),
         log:
             f"{LOGS}/unpack_reference.log",
@@ -309,7 +314,7 @@ rule compare_mixing:
         cells=rules.assign_cells.output.cells,
         chains=expand(rules.run_chain.output.chain, model=MODELS),
         bed_series=RUN["bed_series"],
-        repeats=expand(f"{RESULTS}/repeats/{{repeat}}/mixing.csv", repeat=REPEATS),
+        repeats=expand(f"{BED}/repeats/{{repeat}}/mixing.csv", repeat=REPEATS),
     output:
         mixing=f"{RESULTS}/mixing.csv",
         metrics=f"{RESULTS}/metrics.csv",

@@ -2,6 +2,7 @@
 # The studies, each a target of its own beside the pipeline of the Snakefile, whose names they use:
 #   verify    the solvers against theory                 peers    bedFoam beside other codes
 #   validate  a case against its measured profiles       scores   all chains, chosen by validation, tested once
+#   estimate  what a case will cost, before it runs
 SCORE_PLOTS = ["fig_pareto", "fig5_best", "fig_autocorrelation", "fig_distribution_best"]
 
 
@@ -112,7 +113,7 @@ rule score_models:
         modules("storage", "trial"),
         **TRAJECTORY,
         # an archive keeps the repeats' curves, not their positions
-        repeats=expand(f"{RESULTS}/repeats/{{repeat}}/trajectory.npy", repeat=[] if REFERENCE else REPEATS),
+        repeats=expand(f"{BED}/repeats/{{repeat}}/trajectory.npy", repeat=[] if REFERENCE else REPEATS),
     output:
         scores=f"{RESULTS}/scores.csv",
         selection=f"{RESULTS}/selection.csv",
@@ -184,3 +185,39 @@ rule plot_autocorrelation:
         **pick(CASE, "figures.resolution_dpi", "figures.dem_colour"),
     script:
         "plot_autocorrelation.py"
+
+
+# What a case will cost, before it runs; after a run also what it did cost: snakemake --cores 2 estimate
+rule estimate:
+    input:
+        text=f"{RESULTS}/estimate.txt",
+    log:
+        f"{LOGS}/estimate.log",
+    conda:
+        "../envs/python.yaml"
+    shell:
+        "tee {log} < {input.text}"
+
+
+# What it reads is no input of it: an estimate must not make what it estimates.
+rule estimate_cost:
+    input:
+        modules("case", "estimate", "fidelity", "outcome", "rates", "stage"),
+    output:
+        table=f"{RESULTS}/estimate.csv",
+        text=f"{RESULTS}/estimate.txt",
+    log:
+        f"{LOGS}/estimate_cost.log",
+    conda:
+        "../envs/python.yaml"
+    params:
+        case=CASE,
+        bed=BED,
+        benchmarks={"bed": f"benchmarks/{NAME}", "made": BENCHMARKS},
+        archived=REFERENCE is not None,
+        presets="cases/presets.yaml",
+        records=dated(
+            "results/*/dem.json", f"{BENCHMARKS}/*.tsv", f"{RESULTS}/metrics.csv", "cases/presets.yaml"
+        ),
+    script:
+        "estimate_cost.py"

@@ -180,6 +180,34 @@ def test_what_the_archive_cannot_serve_stops_before_anything(with_archive):
     assert "Traceback" not in done.stderr and not (with_archive / "results").exists()
 
 
+@pytest.fixture
+def with_preset(finished):
+    """The finished copy with one preset, a made-up one; removed afterwards."""
+    file = finished / "cases" / "presets.yaml"
+    file.write_text("fast: {cell_m: 0.02, lag_s: 0.2, model: static}\n", encoding="utf-8")
+    yield finished
+    file.unlink()
+
+
+def test_a_preset_makes_chains_of_its_own_from_the_bed_that_is_there(with_preset, case):
+    made = ALL - (PARTICLES - AUDIT) - {"plot_difference"}
+    jobs = planned(with_preset, config="case=short fidelity=fast")
+    assert set(jobs) == made and jobs["run_chain"] == 1
+    done = snakemake(with_preset, "--dry-run", config="case=short fidelity=fats")
+    assert done.returncode != 0 and "take one of fast" in done.stderr and "Traceback" not in done.stderr
+    file = with_preset / "cases" / "short" / "case.yaml"
+    file.write_text(file.read_text(encoding="utf-8") + "fidelity: fast\n", encoding="utf-8")
+    case("figures", "batch_height_m", "0.02")
+    assert set(planned(with_preset)) == made - WHOLE_BED - AUDIT
+
+
+def test_an_estimate_makes_nothing_else(finished, tmp_path):
+    for name in COPIED:
+        (tmp_path / name).parent.mkdir(parents=True, exist_ok=True)
+        (tmp_path / name).symlink_to(finished / name)
+    assert planned(tmp_path, "estimate") == {"estimate": 1, "estimate_cost": 1}
+
+
 def test_a_scene_without_gas_asks_for_nothing_of_openfoam(finished, tmp_path):
     for name in set(COPIED) - {"openfoam_case"}:
         (tmp_path / name).parent.mkdir(parents=True, exist_ok=True)
@@ -355,7 +383,9 @@ def used_names(script: Path, kind: str) -> set[str]:
 
 def test_every_script_has_the_name_of_its_rule(rules):
     without_own_name = {"build_solver", "write_parameters", "run_dem", "repeat_dem"}
-    assert set(rules) == (ALL | SCORES | {"validate_bed", "write_agreement"}) - without_own_name
+    assert (
+        set(rules) == (ALL | SCORES | {"validate_bed", "write_agreement", "estimate_cost"}) - without_own_name
+    )
     for name, rule in rules.items():
         assert Path(rule.script).name == f"{name}.py"
 

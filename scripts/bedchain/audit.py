@@ -1,7 +1,8 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """What physics a scene needs, by dimensionless numbers, and whether the pipeline builds just that.
 
-Each criterion sets a number against a threshold with its source, and keeps or drops one piece of physics.
+Each criterion sets a number against a threshold with its source, and keeps or drops one piece of physics. A
+threshold is one by definition, derived, of a publication, or our choice; what could not be verified says so.
 """
 
 import math
@@ -15,11 +16,11 @@ from bedchain.parameters import GRAVITY_M_S2
 from bedchain.scene_numbers import Scene
 
 CROWE = "Crowe, Schwarzkopf, Sommerfeld, Tsuji 2012, Multiphase Flows with Droplets and Particles"
-SEVILLE = "Seville, Willett, Knight 2000, Powder Technol. 113, 261"
-# Assumptions where the case has no key: dry glass or sand, rough as such grains are
+FLAT = "by definition: a grain's weight; an asperity before a flat (Israelachvili 2011, not verified)"
+# Assumptions where the case has no key: dry glass or sand, rough as such grains are; numbers not verified
 HAMAKER_J = 6.5e-20  # silica in air: Israelachvili 2011, Intermolecular and Surface Forces, Table 13.3
-GAP_M = 4e-10  # of closest approach: Seville et al. 2000
-ASPERITY_M = 1e-7  # radius of a grain's asperities: Seville et al. 2000
+GAP_M = 4e-10  # of closest approach: Seville, Willett, Knight 2000, Powder Technol. 113, 261
+ASPERITY_M = 1e-7  # radius of a grain's asperities: likewise
 SURFACE_TENSION_N_M = 0.072  # water at 25 degrees Celsius
 GLASS_YOUNG_PA, GLASS_POISSON = 7e10, 0.22  # of the real material: the case's contacts are softened
 STRESS_RATIO = 0.5  # horizontal over vertical stress in a settled bed; 0.3 to 0.6 are usual
@@ -108,19 +109,19 @@ def gas_criteria(scene: Scene) -> Iterator[Criterion]:
     yield Criterion(
         "gas flow", "drag over weight, forced or own", "max(dp_Ergun(U) A / W, F_d(sqrt(2 g h)) / w)",
         max(carried, own), 0.1,
-        "a tenth of the weight; 1 fluidizes (Kunii, Levenspiel 1991, Fluidization Engineering, ch. 3) or "
-        "is the terminal velocity, near which drag matters (Börzsönyi, Ecke 2006, Phys. Rev. E 74, 061301)",
+        "our choice, a tenth of the weight; by definition 1 fluidizes, or is the terminal velocity",
         scene.gas,
     )  # fmt: skip
     yield Criterion(
         "bubbles", "Archimedes number", "Ar = rho_g (rho_p - rho_g) g d^3 / mu^2", numbers.archimedes(scene),
         88.5,
-        "between Geldart's groups A and B: Goossens 1998, Powder Technol. 98, 48", scene.gas, True,
+        "our choice, between Geldart's groups A and B, where sand of 0.1 mm in air has 94; Goossens 1998, "
+        "Powder Technol. 98, 48, not verified", scene.gas, True,
     )  # fmt: skip
     ratio = scene.velocity / numbers.terminal_velocity(scene)
     yield Criterion(
         "particles leaving with the gas", "velocity over the terminal one", "U / u_t", ratio, 1.0,
-        "Kunii, Levenspiel 1991, ch. 3", False, True,
+        "by definition: the gas carries a single particle", False, True,
     )  # fmt: skip
     for name, speed in (
         ("u_mf (Ergun)", numbers.ergun_velocity(scene)),
@@ -131,25 +132,24 @@ def gas_criteria(scene: Scene) -> Iterator[Criterion]:
         yield Criterion(
             f"inertia of the gas in the drag law, at {name} = {speed:.4g} m/s", f"Reynolds number at {name}",
             "Re = rho_g u d / mu", numbers.reynolds(scene, speed), 0.2,
-            "end of Stokes's law: Clift, Grace, Weber 1978, Bubbles, Drops, and Particles, ch. 3", scene.gas,
-            True,
+            "derived: 5 % above Stokes's law, by 0.15 Re^0.687 of Schiller, Naumann 1935", scene.gas, True,
         )  # fmt: skip
     yield from turbulence_criteria(scene)
     yield Criterion(
         "compressibility of the gas, by velocity", "Mach number", "max(U / e, u_t) / sqrt(gamma p / rho_g)",
         max(scene.velocity / scene.voidage, numbers.terminal_velocity(scene)) / numbers.sound_velocity(scene),
         0.3,
-        "5 % of the density: Anderson 2017, Fundamentals of Aerodynamics, ch. 8", False, True,
+        "derived: 5 % of the density, (1 + (gamma - 1) M^2 / 2)^(1 / (gamma - 1))", False, True,
     )  # fmt: skip
     load = (1 - scene.voidage) * (scene.density - scene.gas_density) * GRAVITY_M_S2 * scene.depth
     yield Criterion(
         "compressibility of the gas, by pressure", "weight of the bed over the pressure", "W / (A p)",
-        load * min(1, carried) / numbers.PRESSURE_PA, 0.05, "the same 5 % of the density", False, True,
+        load * min(1, carried) / numbers.PRESSURE_PA, 0.05, "our choice, the same 5 %", False, True,
     )  # fmt: skip
     yield Criterion(
         "slip of the gas on particles", "Knudsen number", "Kn = lambda / d",
         numbers.free_path(scene) / scene.diameter,
-        0.01, f"end of the continuum: {CROWE}, ch. 4", False, True,
+        0.01, "derived: 2.5 % of the drag, 1 + 2.51 Kn (Davies 1945, Proc. Phys. Soc. 57, 259)", False, True,
     )  # fmt: skip
 
 
@@ -158,12 +158,14 @@ def turbulence_criteria(scene: Scene) -> Iterator[Criterion]:
     yield Criterion(
         "turbulence in the pores", "Reynolds number of the pores", "Re = rho_g (U / e) d / mu",
         numbers.reynolds(scene, scene.velocity / scene.voidage), 300,
-        "Dybbs, Edwards 1984, in Fundamentals of Transport Phenomena in Porous Media, 199", False, True,
+        "unsteady and chaotic, with the size of the pores for d: Dybbs, Edwards 1984, in Fundamentals of "
+        "Transport Phenomena in Porous Media, 199", False, True,
     )  # fmt: skip
     yield Criterion(
         "turbulence above the bed", "Reynolds number of the slab", "Re = rho_g U D_h / mu",
         scene.gas_density * scene.velocity * numbers.hydraulic_diameter(scene) / scene.viscosity, 2300,
-        "transition in a channel: White 2011, Viscous Fluid Flow, ch. 5", False, True,
+        "transition in a pipe, by the hydraulic diameter: White 2011, Fluid Mechanics, ch. 6, not verified",
+        False, True,
     )  # fmt: skip
     yield Criterion(
         "turbulence of the bed's size", "gas relaxation over the eddies' time", "tau_g U / W",
@@ -174,40 +176,42 @@ def turbulence_criteria(scene: Scene) -> Iterator[Criterion]:
 
 def force_criteria(scene: Scene) -> Iterator[Criterion]:
     """Which forces between gas and particles matter."""
+    # A particle in a gas that speeds up over W keeps the slip St / (1 + St), so that its drag over the gas's
+    # momentum is Z / (1 + St). Accelerated evenly for a relaxation time t, it has the history force
+    # 3 d^2 sqrt(pi rho_g mu t) a, and Stokes's drag 3 pi mu d a t: sqrt(18 rho_g / (pi rho_p)) of it.
     density_ratio = scene.gas_density / scene.density
     stokes = scene.density * scene.diameter**2 * scene.velocity / (18 * scene.viscosity * scene.width)
     loading = (1 - scene.voidage) / (scene.voidage * density_ratio)
     yield Criterion(
         "slip between gas and particles", "Stokes number", "St = rho_p d^2 U / (18 mu W)", stokes, 0.1,
-        f"particles follow the gas far below 1: {CROWE}, ch. 2", scene.gas, True,
+        "our choice, a tenth; at 1 they follow the gas half", scene.gas, True,
     )  # fmt: skip
     yield Criterion(
         "particles act on the gas", "momentum coupling", "Z / (1 + St), Z = (1 - e) rho_p / (e rho_g)",
-        loading / (1 + stokes), 0.1, f"one-way coupling far below 1: {CROWE}, ch. 2", scene.gas, True,
+        loading / (1 + stokes), 0.1, f"our choice, a tenth; derived as in {CROWE}, ch. 2", scene.gas, True,
     )  # fmt: skip
     yield Criterion(
         "force of the pressure gradient", "over the weight", "min(dp_Ergun(U), W) V_p / (h w)",
-        (1 - scene.voidage) * min(1, numbers.pressure_share(scene)), 0.01, "a hundredth of the weight",
-        scene.gas, True,
+        (1 - scene.voidage) * min(1, numbers.pressure_share(scene)), 0.01,
+        "our choice, a hundredth of the weight", scene.gas, True,
     )  # fmt: skip
     yield Criterion(
         "buoyancy in gas at rest", "gas to particle density", "rho_g / rho_p", density_ratio, 0.01,
-        "a hundredth of the weight", False, True,
+        "our choice, a hundredth of the weight", False, True,
     )  # fmt: skip
     yield Criterion(
         "added mass", "added over own mass", "rho_g / (2 rho_p)", density_ratio / 2, 0.01,
-        "small forces at large density ratios: Elghobashi, Truesdell 1992, J. Fluid Mech. 242, 655", False,
-        True,
+        "our choice, a hundredth of the inertia; half of the displaced gas, as for any sphere", False, True,
     )  # fmt: skip
     yield Criterion(
         "history force", "Basset's force over Stokes's drag", "sqrt(18 rho_g / (pi rho_p))",
-        math.sqrt(18 / math.pi * density_ratio), 0.1, f"over a relaxation time: {CROWE}, ch. 4", False, True,
+        math.sqrt(18 / math.pi * density_ratio), 0.1, "our choice, a tenth over a relaxation time; derived",
+        False, True,
     )  # fmt: skip
     yield Criterion(
         "flow around each particle", "particle size over gas cell", "d / cell", scene.diameter / scene.cell,
         1 / 1.63,
-        "a cell of 1.63 d or more averages: Peng, Doroodchi, Luo, Moghtaderi 2014, AIChE J. 60, 2000", False,
-        True,
+        "our choice, cells of 1.63 d average; Peng et al. 2014, AIChE J. 60, 2000, not verified", False, True,
     )  # fmt: skip
 
 
@@ -215,8 +219,8 @@ def contact_criteria(scene: Scene) -> Iterator[Criterion]:
     """Collisions, cohesion and rolling."""
     yield Criterion(
         "collisions", "relaxation over collision time", "(u_t / g) n pi d^2 sqrt(g d)",
-        numbers.relaxation_time(scene) / numbers.collision_time(scene), 1.0, f"dense above 1: {CROWE}, ch. 2",
-        True,
+        numbers.relaxation_time(scene) / numbers.collision_time(scene), 1.0,
+        f"by definition: dense above 1, as in {CROWE}, ch. 2", True,
     )  # fmt: skip
     yield Criterion(
         "drag within a collision", "contact over relaxation time", "t_c g / u_t",
@@ -229,19 +233,19 @@ def contact_criteria(scene: Scene) -> Iterator[Criterion]:
         "gas squeezed out of contacts", "loss of restitution",
         "1 - exp(-35 / St), St = rho_p d sqrt(g d) / (9 mu)",
         -math.expm1(-35 / collision_stokes), 0.1,
-        "Legendre, Daniel, Guiraud 2005, Phys. Fluids 17, 097105; the dry value is not known better", False,
-        True,
+        "our choice, a tenth; Legendre, Daniel, Guiraud 2005, Phys. Fluids 17, 097105, not verified; St "
+        "rules in gas too: Gondret, Lance, Petit 2002, Phys. Fluids 14, 643", False, True,
     )  # fmt: skip
     yield Criterion(
         "cohesion, van der Waals", "Bond number",
         "A r_a / (6 z^2 w): A = 6.5e-20 J, r_a = 0.1 um, z = 0.4 nm",
-        HAMAKER_J * ASPERITY_M / (6 * GAP_M**2) / scene.weight, 1.0, SEVILLE, False,
+        HAMAKER_J * ASPERITY_M / (6 * GAP_M**2) / scene.weight, 1.0, FLAT, False,
     )  # fmt: skip
     yield Criterion(
         "cohesion, condensed water", "Bond number",
         "4 pi gamma r_a / w: gamma = 0.072 N/m, r_a = 0.1 um, no liquid added",
         4 * math.pi * SURFACE_TENSION_N_M * ASPERITY_M / scene.weight, 1.0,
-        f"{SEVILLE}; bridges at asperities: Halsey, Levine 1998, Phys. Rev. Lett. 80, 3141", False,
+        f"{FLAT}; bridges at asperities: Halsey, Levine 1998, Phys. Rev. Lett. 80, 3141", False,
     )  # fmt: skip
     yield Criterion(
         "rolling resistance", "contact over particle radius", "a_Hertz / R under the settled bed, of glass",
@@ -276,10 +280,8 @@ def wall_criteria(scene: Scene) -> Iterator[Criterion]:
     # would bear only what the gas does not carry
     resting = 1 if scene.layered else 1 - min(1, numbers.pressure_share(scene))
     janssen = 2 * scene.friction * STRESS_RATIO * scene.depth
-    source = (
-        "a hundredth of the weight; Janssen 1895, in Nedderman 1992, Statics and Kinematics of Granular "
-        "Materials, ch. 5"
-    )
+    # Janssen 1895: dp / dz = rho g - 2 mu K p / W, so that the floor carries (1 - exp(-j)) / j of the weight
+    source = "our choice, a hundredth of the weight; derived as by Janssen 1895"
     yield Criterion(
         "friction on the side walls", "Janssen's share of the weight",
         "1 - (1 - exp(-j)) / j, j = 2 mu K h / W, at rest",

@@ -8,6 +8,7 @@ from typing import Any
 from bedchain.archive import SIMULATE, check_archive
 from bedchain.case import Case, load_case, load_schema
 from bedchain.errors import UserError, report_user_errors
+from bedchain.fidelity import preset_named, with_preset
 from bedchain.parameters import solver_parameters
 from bedchain.scene_checks import used_keys
 
@@ -29,18 +30,22 @@ LIBRARY = Path("scripts/bedchain")
 CASES = Path("cases")
 
 
-def case_or_exit(name: str) -> Case:
+def case_or_exit(name: str, fidelity: str | None = None) -> Case:
     """The checked case of a name, or one clear message and the end of snakemake, before anything runs.
 
     Parameters
     ----------
     name : str
         A folder in ``cases/``.
+    fidelity : str, optional
+        A preset of ``cases/presets.yaml`` for its chains, ``--config fidelity=``; without it the one that
+        the case's key ``fidelity`` names, if any.
 
     Raises
     ------
     SystemExit
-        Code 1, where there is no such case, or its file has problems.
+        Code 1, where there is no such case or preset, the case's file has problems, or the two do not go
+        together.
     """
     with report_user_errors():
         known = sorted(file.parent.name for file in CASES.glob("*/case.yaml"))
@@ -48,7 +53,9 @@ def case_or_exit(name: str) -> Case:
             raise UserError(
                 f"there is no case {name!r}: take --config case=NAME with one of {', '.join(known)}"
             )
-        return load_case(CASES / name / "case.yaml")
+        case = load_case(CASES / name / "case.yaml")
+        preset = fidelity or case.get("fidelity")
+        return with_preset(case, preset_named(str(preset))) if preset else case
 
 
 def reference_or_exit(wanted: str | None, name: str, case: Case) -> Path | None:
@@ -171,6 +178,24 @@ def imported_modules(file: Path) -> list[str]:
         elif isinstance(node, ast.ImportFrom) and node.module:
             names.append(node.module)
     return sorted({name.split(".")[1] for name in names if name.startswith("bedchain.")})
+
+
+def dated(*patterns: str) -> dict[str, int]:
+    """Files that match any of the patterns, with their times: so a rule sees that one changed.
+
+    Parameters
+    ----------
+    *patterns : str
+        Relative to the repository, such as ``"results/*/dem.json"``.
+
+    Returns
+    -------
+    dict
+        Path -> time of its last change [ns].
+    """
+    return {
+        str(file): file.stat().st_mtime_ns for pattern in patterns for file in sorted(Path().glob(pattern))
+    }
 
 
 def source_files(folder: str, *patterns: str) -> list[str]:

@@ -1,0 +1,93 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""What a case will cost, and after a run what it did cost: results/<case>/estimate.csv, estimate.txt."""
+
+import os
+from pathlib import Path
+
+import pandas as pd
+
+from bedchain.case import Case
+from bedchain.estimate import predicted
+from bedchain.fidelity import read_presets
+from bedchain.outcome import FACTOR_AIM, compared, happened, outside
+from bedchain.rates import bed_of, calibrate
+from bedchain.stage import LOG, complete, stage, write_csv
+
+UNITS = {"wall_s": "s", "memory_mb": "MB", "disk_mb": "MB on disk", "error_floors": "noise floors"}
+SHOWN = {
+    **{name: ("estimated", unit) for name, unit in UNITS.items()},
+    **{f"happened_{name}": ("came true", unit) for name, unit in UNITS.items()},
+    "done_1": ("share", "done"),
+    "ratio_1": ("ratio", "of times"),
+}
+BUSY_CORES = 0.5  # other programs that keep more of the machine busy are worth a word
+
+
+def estimate_cost(
+    case: Case, bed: Path, benchmarks: dict[str, Path], runs: list[Path], archived: bool, presets: Path,
+    table: Path, text: Path,
+) -> None:  # fmt: skip
+    """Estimate every stage of a case, and set what has happened beside it.
+
+    Parameters
+    ----------
+    case : dict
+        A checked case.
+    bed : Path
+        ``results/<case>``, where its particles are simulated.
+    benchmarks : dict of str to Path
+        Snakemake's benchmarks by ``bed`` and ``made``.
+    runs : list of Path
+        Every ``dem.json`` there is; those of other cases tell how fast this machine is.
+    archived : bool
+        Whether the bed is taken from an archive.
+    presets : Path
+        ``cases/presets.yaml``, for errors that were measured; it may be missing.
+    table, text : Path
+        Get the estimate, the second to be read.
+    """
+    speed = calibrate([run for run in runs if run.parent != bed], bed_of(case))
+    expected = predicted(case, speed, read_presets(presets).values(), archived)
+    found = compared(expected, happened(case, bed, table.parent, benchmarks))
+    write_csv(found.reset_index(), table)
+    with complete(text) as temporary:
+        temporary.write_text("\n".join([*header(case, speed.source), lines(found), ""]), encoding="utf-8")
+    for name in outside(found):
+        LOG.info(
+            "%s came out %.2f times as long as estimated, more than %g",
+            name,
+            found["ratio_1"][name],
+            FACTOR_AIM,
+        )
+
+
+def header(case: Case, source: str) -> list[str]:
+    """What the estimate is of and rests on."""
+    found = [f"{case['title']}, by {source}; stages one after the other, without figures and diagnostics"]
+    if (busy := os.getloadavg()[0]) > BUSY_CORES:
+        found.append(
+            f"other programs keep {busy:.1f} of {os.cpu_count()} cores busy now: it would take longer"
+        )
+    return found
+
+
+def lines(table: pd.DataFrame) -> str:
+    """The table with short numbers, without columns of which nothing is known."""
+    known = table.dropna(axis="columns", how="all")
+    short = known.map(lambda value: "" if pd.isna(value) else f"{value:,.{0 if value >= 100 else 2}f}")
+    short.columns = pd.MultiIndex.from_tuples([SHOWN[name] for name in known.columns])
+    return short.rename_axis(None).to_string()
+
+
+if "snakemake" in globals():
+    with stage(snakemake.log[0]):
+        estimate_cost(
+            snakemake.params.case,
+            Path(snakemake.params.bed),
+            {name: Path(folder) for name, folder in snakemake.params.benchmarks.items()},
+            [Path(file) for file in snakemake.params.records if Path(file).name == "dem.json"],
+            snakemake.params.archived,
+            Path(snakemake.params.presets),
+            Path(snakemake.output.table),
+            Path(snakemake.output.text),
+        )
