@@ -182,11 +182,14 @@ def test_what_the_archive_cannot_serve_stops_before_anything(with_archive):
 
 @pytest.fixture
 def with_preset(finished):
-    """The finished copy with one preset, a made-up one; removed afterwards."""
+    """The finished copy with one preset, a made-up one; put back afterwards."""
     file = finished / "cases" / "presets.yaml"
+    shipped = file.read_bytes() if file.exists() else None
     file.write_text("fast: {cell_m: 0.02, lag_s: 0.2, model: static}\n", encoding="utf-8")
     yield finished
     file.unlink()
+    if shipped is not None:
+        file.write_bytes(shipped)
 
 
 def test_a_preset_makes_chains_of_its_own_from_the_bed_that_is_there(with_preset, case):
