@@ -4,6 +4,7 @@
 import math
 from fractions import Fraction
 
+GRAVITY_M_S2 = 9.81  # standard value, rounded; downwards along z
 DENSE_VOIDAGE = 0.4  # of a packed bed; makes the estimate of the gas velocity between particles a high one
 PACKED_AREA_SHARE = 0.82  # area covered by one layer of random close-packed discs
 PACKED_VOLUME_SHARE = 0.6  # volume filled by spheres after a fall, between random loose and random close
@@ -90,6 +91,37 @@ def start_height(number: int, diameter: float, width: float, depth: float | None
     columns = math.floor(width / spacing)
     layers = 1 if depth is None else math.floor(depth / spacing)
     return math.ceil(number / (columns * layers)) * width / columns
+
+
+def contact_modulus(young: float, poisson: float) -> float:
+    """Modulus of a contact of equal materials [Pa], ``E / (2 (1 - nu^2))`` (Johnson 1985, ch. 4)."""
+    return young / (2 * (1 - poisson**2))
+
+
+def static_overlap(
+    young: float, poisson: float, density: float, diameter: float, number: int, width: float, depth: float
+) -> float:
+    """Overlap of two particles under the weight of a settled bed, over the diameter [1].
+
+    ``(3 F / (4 E* sqrt(R*)))^(2/3) / d``, Hertz (Johnson 1985, Contact Mechanics, ch. 4); ``R* = d / 4``,
+    and F what a particle of the lowest layer carries, ``W d / width``, of a bed many particles deep
+    ``W d^2 / (width depth)``.
+
+    Parameters
+    ----------
+    young, poisson : float
+        Young's modulus [Pa], Poisson's ratio [1].
+    density, diameter : float
+        Of the particles [kg/m3], [m].
+    number : int
+        Particles [1].
+    width, depth : float
+        Of the bed, and between the walls in front and behind [m]; a depth below a diameter is one layer.
+    """
+    weight = number * density * math.pi / 6 * diameter**3 * GRAVITY_M_S2
+    load = weight * diameter / width * min(1.0, diameter / depth)
+    modulus = contact_modulus(young, poisson)
+    return (3 * load / (4 * modulus * math.sqrt(diameter / 4))) ** (2 / 3) / diameter
 
 
 def is_prime(number: int) -> bool:

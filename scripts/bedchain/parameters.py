@@ -5,9 +5,9 @@ import math
 from dataclasses import dataclass
 
 from bedchain.case import Case, Schema, case_value, schema_keys
+from bedchain.case_numbers import GRAVITY_M_S2 as GRAVITY_M_S2
 from bedchain.case_numbers import START_SPACING_DIAMETERS, ratio
 
-GRAVITY_M_S2 = 9.81  # standard value, rounded; downwards along z
 SKIN_DIAMETERS = (
     0.7  # neighbour skin: a list lasts until a particle has moved half of it; speed only, no physics
 )

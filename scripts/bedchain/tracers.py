@@ -96,7 +96,7 @@ class TracerChain(ABC):
         rng: np.random.Generator | None = None,
     ) -> NDArray[np.float64] | NDArray[np.int64]:
         """See `models.Chain.densities`."""
-        wanted = {int(step): place for place, step in enumerate(steps)}
+        wanted = np.asarray(steps, np.int64)
         n = marked.shape[1]
         total = np.zeros((len(steps), len(marked), self.grid.n_cells), np.int64)
         generators = [rng] if rng is not None else self._expected()
@@ -104,9 +104,9 @@ class TracerChain(ABC):
             copies = self._copies(start.cells.shape[1])
             start, marked = _chosen(start, copies), marked[:, copies]
         for generator in generators:
-            for step, cells in enumerate(self.paths(start, max(wanted), generator)):
-                if step in wanted:
-                    total[wanted[step]] += mixing.marked_histogram(cells, marked, self.grid.n_cells)
+            for step, cells in enumerate(self.paths(start, int(wanted.max()), generator)):
+                if (places := wanted == step).any():
+                    total[places] += mixing.marked_histogram(cells, marked, self.grid.n_cells)
         return total if rng is not None else total / (len(generators) * marked.shape[1] / n)
 
     def paths(self, start: Frames, steps: int, rng: np.random.Generator) -> Iterator[NDArray[np.int32]]:
