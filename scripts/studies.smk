@@ -2,7 +2,7 @@
 # The studies, each a target of its own beside the pipeline of the Snakefile, whose names they use:
 #   verify    the solvers against theory                 peers    bedFoam beside other codes
 #   validate  a case against its measured profiles       scores   all chains, chosen by validation, tested once
-#   estimate  what a case will cost, before it runs
+#   estimate  what a case will cost, before it runs      stability solvers and chains at their extremes
 SCORE_PLOTS = ["fig_pareto", "fig5_best", "fig_autocorrelation", "fig_distribution_best"]
 
 
@@ -69,6 +69,38 @@ rule compare_peers:
     shell:
         "python scripts/compare_peers.py --solver {input.solver} --folder {params.folder} {params.options}"
         " 2>&1 | tee {log} >&2"
+
+
+# Solvers and chains at their extremes: snakemake --cores 2 stability --config stability=reduced
+rule stability:
+    input:
+        "results/stability/stability.csv",
+
+
+# What was tried is kept in results/stability/kept: a study that was stopped goes on.
+rule study_stability:
+    input:
+        modules("diagnostics", "figures", "mixing", "models", "scene_numbers", "segments", "stage", "variants"),
+        source_files("scripts/bedchain/stability", "*.py"),
+        source_files("scripts/bedchain/verification", "*.py"),
+        schema="cases/case.schema.yaml",
+        solver=SOLVER,
+        decks=source_files("liggghts_inputs", "in.*", "include/*.in"),
+        gas=source_files("openfoam_case", "0.orig/*", "constant/*", "system/*"),
+    output:
+        table="results/stability/stability.csv",
+        figures=directory("results/stability/figures"),
+    log:
+        "logs/study_stability.log",
+    benchmark:
+        "benchmarks/study_stability.tsv"
+    conda:
+        "../envs/python.yaml"
+    params:
+        folder=subpath(output.table, parent=True),
+        extent=config.get("stability", "full"),
+    shell:
+        "python scripts/study_stability.py --folder {params.folder} --extent {params.extent} 2>&1 | tee {log} >&2"
 
 
 # Against measured profiles, where a case has them: snakemake --cores 2 --config case=mueller validate

@@ -33,11 +33,12 @@ STABILITY = Path("scripts/bedchain/stability")
 
 def sources(settings: list[Setting]) -> dict[str, list[Path]]:
     """Files that the verdicts of each group depend on: the solvers' or the chains', and the judge's."""
-    judge = [STABILITY / "verdict.py", Path("scripts/bedchain/verification/rows.py")]
-    decks = source_files("liggghts_inputs", "in.settle", "in.fluidize", "include/*.in")
+    verification = Path("scripts/bedchain/verification")
+    judge = [STABILITY / "verdict.py", verification / "rows.py"]
+    decks = source_files("liggghts_inputs", "in.settle", "in.fluidize", "in.contact", "include/*.in")
     gas = source_files("openfoam_case", "0.orig/*", "constant/*", "system/*")
-    schema = "cases/case.schema.yaml"
-    beds = [SOLVER, schema, *decks, *gas, *modules("variants", "segments"), STABILITY / "bed_runs.py"]
+    runs = [STABILITY / "bed_runs.py", STABILITY / "collisions.py", verification / "bench.py"]
+    beds = [SOLVER, "cases/case.schema.yaml", *decks, *gas, *modules("variants", "segments"), *runs]
     own = [STABILITY / f"{name}.py" for name in ("chain_runs", "chain_settings", "walkers")]
     chains = [*modules("models", "mixing", "diagnostics"), *own]
     files = {True: chains, False: beds}

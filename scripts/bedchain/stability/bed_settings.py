@@ -17,7 +17,7 @@ from bedchain.stability.beds import (
     DIAMETER,
     GAS_DENSITY,
     Bed,
-    changes,
+    case_of,
     clock,
     scene,
     two_digits,
@@ -54,7 +54,7 @@ def of(
         "young_Pa": bed.stiffness, "dem_step_s": time["dem_step_s"], "gas_step_s": time["gas_step_s"],
         "velocity_m_s": bed.velocity, "gas_cell_m": bed.cell * bed.diameter, "ranks_1": bed.ranks,
     }  # fmt: skip
-    inputs = repr((sorted(changes(bed).items()), bed.ranks, expected))
+    inputs = repr((case_of(bed), expected))
     run = partial(_run, bed, expected)
     return Setting(group, name, values, limit, run, inputs, guards, expected.reference, reduced)
 
