@@ -80,7 +80,9 @@ rule stability:
 # What was tried is kept in results/stability/kept: a study that was stopped goes on.
 rule study_stability:
     input:
-        modules("diagnostics", "figures", "mixing", "models", "scene_numbers", "segments", "stage", "variants"),
+        modules(
+            "diagnostics", "figures", "mixing", "models", "scene_numbers", "segments", "stage", "variants"
+        ),
         source_files("scripts/bedchain/stability", "*.py"),
         source_files("scripts/bedchain/verification", "*.py"),
         schema="cases/case.schema.yaml",

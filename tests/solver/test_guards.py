@@ -40,17 +40,18 @@ def settled_once(tmp_path_factory):
 def faulty_bed(make_bed, settled_once):
     """Function that makes a tiny bed, settled by the healthy case, with a fault in its case or parameters."""
 
-    def make(ranks, edits=(), **changes):
+    def make(ranks, edits=(), deck_edits=(), **changes):
         if not (settled_once / "particles.restart").exists():
             run = run_of(make_bed("healthy"), 1)
             stage.settle(run)
             shutil.copytree(run.state / SETTLED, settled_once, dirs_exist_ok=True)
         folder = make_bed("faulty", **changes)
-        file = folder / "caseParameters"
-        for name, value in edits:
-            text, found = re.subn(rf"^{name} \S+;", f"{name} {value};", file.read_text(), flags=re.M)
+        wanted = [("caseParameters", f"{name} ", f"{value};") for name, value in edits]
+        wanted += [("parameters.lig", f"variable {name} equal ", value) for name, value in deck_edits]
+        for file, entry, value in wanted:
+            text, found = re.subn(rf"^{entry}\S+", f"{entry}{value}", (folder / file).read_text(), flags=re.M)
             assert found == 1
-            file.write_text(text)
+            (folder / file).write_text(text)
         shutil.copytree(settled_once, run_of(folder, ranks).state / SETTLED)
         return folder
 
@@ -101,7 +102,7 @@ def told(message, pattern):
     [
         (1, {"time": {"dem_step_s": 2.5e-4, "allow_unstable_step": True}}),
         (2, {"time": {"dem_step_s": 2.5e-4, "allow_unstable_step": True}}),
-        (1, {"contact": {"young_modulus_Pa": 10.0}, "gas": {"voidage_clip": "count"}}),
+        (1, {"deck_edits": [("young", "10.0")], "gas": {"voidage_clip": "count"}}),
     ],
     ids=["step_too_long", "step_too_long_on_two_ranks", "too_soft"],
 )

@@ -5,6 +5,7 @@ import math
 from collections.abc import Iterator
 from dataclasses import replace
 from functools import partial
+from pathlib import Path
 
 from bedchain.case_checks import FILLED_HEIGHT_MAX, RAYLEIGH_SHARE_MAX
 from bedchain.case_numbers import PACKED_AREA_SHARE, settled_height
@@ -23,8 +24,9 @@ from bedchain.stability.beds import (
     two_digits,
 )
 from bedchain.stability.collisions import Collision, run_collision
-from bedchain.stability.settings import ON, Setting
+from bedchain.stability.settings import ON, Known, Setting
 from bedchain.stability.theory import Limit
+from bedchain.stability.verdict import Verdict
 
 STIFFNESSES = (1e4, 1e5, 1e6, 1e7, 1e8, 1e9)  # [Pa]
 SHARES = (0.01, 0.05, 0.2, 0.5, 1.0, 1.5)  # of the Rayleigh time
@@ -41,7 +43,6 @@ FINEST_CELL = 1.63  # diameters: Peng, Doroodchi, Luo, Moghtaderi 2014, AIChE J.
 THINNEST = 0.8165  # diameters, of a slab
 DEEP = Bed(number=1500, height=140)  # 72 diameters: higher than all gas cells
 CELL_SHARE = 0.2  # relative, of the weight on the gas: what cells of another size may make of it
-NO_LIMIT = Limit("none", math.inf, "", math.nan)
 
 
 def of(
@@ -59,7 +60,7 @@ def of(
     return Setting(group, name, values, limit, run, inputs, guards, expected.reference, reduced)
 
 
-def _run(bed, expected, folder, known):  # type: ignore[no-untyped-def]
+def _run(bed: Bed, expected: Expected, folder: Path, known: Known) -> Verdict:
     return run_bed(folder, bed, expected, known)
 
 
@@ -122,7 +123,7 @@ def of_collision(name: str, one: Collision, limit: Limit, guards: str, reduced: 
     return Setting("collision_time", name, values, limit, run, repr(one), guards, "", reduced)
 
 
-def _run_collision(one, folder, known):  # type: ignore[no-untyped-def]
+def _run_collision(one: Collision, folder: Path, known: Known) -> Verdict:
     return run_collision(folder, one)
 
 

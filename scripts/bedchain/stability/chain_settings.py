@@ -4,6 +4,7 @@
 from collections.abc import Callable, Iterator
 from dataclasses import replace
 from functools import partial
+from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -15,7 +16,7 @@ from bedchain.frames import Frames
 from bedchain.grid import Grid
 from bedchain.markov_chain import MarkovChain
 from bedchain.stability.chain_runs import ChainCase, rare_moves, run_chain
-from bedchain.stability.settings import ON, Setting
+from bedchain.stability.settings import ON, Known, Setting
 from bedchain.stability.theory import Limit
 from bedchain.stability.verdict import Verdict
 from bedchain.stability.walkers import (
@@ -91,7 +92,7 @@ def of(
     return Setting(group, full, values, limit, run, inputs, guards, "", reduced)
 
 
-def _run(model, build, learn, folder, known) -> Verdict:  # type: ignore[no-untyped-def]
+def _run(model: str, build: Build, learn: Learn, folder: Path, known: Known) -> Verdict:
     return run_chain(model, build, learn)
 
 
@@ -104,14 +105,15 @@ def chain_settings() -> list[Setting]:
 def grids() -> Iterator[Setting]:
     """One cell, one cell a diameter, a row of one, a column of one, cells that nothing visits, a drain."""
     per_diameter = {"columns": round(WIDTH / DIAMETER), "rows": round(HEIGHT / DIAMETER)}
-    for name, keys in {
+    settings: dict[str, dict[str, Any]] = {
         "1 x 1 cell": {"columns": 1, "rows": 1, "settled": True},
         "one cell a diameter": per_diameter,
         "a row of one": {"columns": 1, "settled": True},
         "a column of one": {"rows": 1, "settled": True},
         "unvisited cells": {"top": 0.5, "lift": 0.1},
         "absorbing cell": {"change": with_drain},
-    }.items():
+    }
+    for name, keys in settings.items():
         for model in models.LEARNERS:
             yield of("chain grid", name, model, no_limit(), keys)
 
@@ -160,7 +162,7 @@ def probabilities() -> Iterator[Setting]:
         yield Setting("chain probability", name, values, limit, run, repr(probability), reduced=True)
 
 
-def _run_rare(probability, folder, known) -> Verdict:  # type: ignore[no-untyped-def]
+def _run_rare(probability: float, folder: Path, known: Known) -> Verdict:
     return rare_moves(probability, 100, 1000)
 
 

@@ -3,11 +3,13 @@
 
 from dataclasses import replace
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import pandas as pd
 from matplotlib import pyplot as plt
 from matplotlib.axes import Axes
+from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 
 from bedchain.case_checks import COURANT_MAX, RAYLEIGH_SHARE_MAX
@@ -67,7 +69,7 @@ def mark(axes: Axes, x: pd.Series, y: pd.Series, outcomes: pd.Series) -> None:
         )  # fmt: skip
 
 
-def marks_legend(axes: Axes, outcomes: pd.Series, lines: list[Line2D] | None = None, **place: object) -> None:
+def marks_legend(axes: Axes, outcomes: pd.Series, lines: list[Line2D] | None = None, **place: Any) -> None:
     """Legend of the outcomes that are there, and of lines."""
     handles = [
         Line2D([], [], marker=shape, color=colour, linestyle="none", markersize=5, label=name)
@@ -77,7 +79,7 @@ def marks_legend(axes: Axes, outcomes: pd.Series, lines: list[Line2D] | None = N
     axes.legend(handles=handles + (lines or []), **place)
 
 
-def draw_steps(table: pd.DataFrame) -> plt.Figure:
+def draw_steps(table: pd.DataFrame) -> Figure:
     """Step over the Rayleigh time by stiffness, guard off where it refuses; three limits as lines."""
     young = np.geomspace(5e3, 2e9, 60)
     beds = [scene(replace(SMALL, young=one)) for one in young]
@@ -106,7 +108,7 @@ def draw_steps(table: pd.DataFrame) -> plt.Figure:
     return figure
 
 
-def draw_gas_steps(table: pd.DataFrame) -> plt.Figure:
+def draw_gas_steps(table: pd.DataFrame) -> Figure:
     """Gas step over the gas's drag relaxation time by Courant number, for a fixed and a fluidized bed."""
     figure, panels = plt.subplots(1, 2, figsize=(DOUBLE_COLUMN_IN, 2.8), sharex=True, sharey=True)
     for axes, share, name in zip(panels, (FIXED, FLUIDIZED), ("fixed", "fluidized"), strict=True):
@@ -129,7 +131,7 @@ def draw_gas_steps(table: pd.DataFrame) -> plt.Figure:
     return figure
 
 
-def draw_over_limit(table: pd.DataFrame) -> plt.Figure:
+def draw_over_limit(table: pd.DataFrame) -> Figure:
     """Every other setting of particles and gas over its limit by theory, in rows."""
     own = table[np.isfinite(table["over_limit_1"]) & (table["over_limit_1"] > 0)]
     figure, axes = plt.subplots(figsize=(DOUBLE_COLUMN_IN / 1.2, 0.19 * len(own) + 0.9))
@@ -145,7 +147,7 @@ def draw_over_limit(table: pd.DataFrame) -> plt.Figure:
     return figure
 
 
-def draw_chains(table: pd.DataFrame) -> plt.Figure:
+def draw_chains(table: pd.DataFrame) -> Figure:
     """Every setting of the chains by model."""
     pairs = zip(table["setting"], table["model"], strict=True)
     own = table.assign(row=[name.replace(f", {model}", "") for name, model in pairs])

@@ -79,14 +79,15 @@ def judge(rows: list[Row], observed: dict[str, float] | None = None) -> Verdict:
     observed : dict of str to float, optional
     """
     worst = max(rows, key=excess)
-    numbers = {
-        "quantity": worst.quantity, "value": worst.value, "reference": worst.reference,
-        "tolerance": worst.tolerance, "observed": observed or {},
-    }  # fmt: skip
     if worst.passed:
-        return Verdict(STABLE, **numbers)
-    reason = f"{worst.quantity} {worst.value:.4g}, {worst.reference:.4g} expected ({worst.source})"
-    return Verdict(INACCURATE, reason=reason, **numbers)
+        outcome, reason = STABLE, ""
+    else:
+        outcome = INACCURATE
+        reason = f"{worst.quantity} {worst.value:.4g}, {worst.reference:.4g} expected ({worst.source})"
+    return Verdict(
+        outcome, reason=reason, quantity=worst.quantity, value=worst.value, reference=worst.reference,
+        tolerance=worst.tolerance, observed=observed or {},
+    )  # fmt: skip
 
 
 def refused(error: CaseError) -> Verdict:
@@ -114,8 +115,8 @@ def stopped(text: str) -> Verdict:
     for guard, pattern in GUARDS.items():
         found = re.search(pattern, text)
         if found and "Traceback" not in text:
-            where = {f"{name}_m": float(found[name]) for name in "xz" if name in found.groupdict()}
-            when = {"time_s": float(found["time"])} if "time" in found.groupdict() else {}
-            return Verdict(DIVERGED, guard, found[0].removesuffix(" The last finished segment is intact"),
-                           **where, **when)  # fmt: skip
+            numbers = {name: float(value) for name, value in found.groupdict().items()}
+            when, x, z = (numbers.get(name, math.nan) for name in ("time", "x", "z"))
+            reason = found[0].removesuffix(" The last finished segment is intact")
+            return Verdict(DIVERGED, guard, reason, when, x, z)
     return Verdict(CRASHED, reason=text[-500:])

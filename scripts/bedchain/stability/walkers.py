@@ -37,7 +37,7 @@ def walkers(n_frames: int, n_particles: int, seed: int = 1, top: float = 1.0) ->
             speed = MEMORY * np.where(back, -speed, speed) + kick
         axes.append(frames)
     (x, vx), (z, vz) = axes
-    times_s = INTERVAL * np.arange(n_frames)
+    times_s = INTERVAL * np.arange(n_frames, dtype=np.float64)
     return Frames(times_s, x, z, np.zeros(x.shape, np.int32), vx, vz)
 
 
@@ -50,12 +50,13 @@ def with_drain(frames: Frames) -> Frames:
     """Frames in which a particle that comes into the upper right corner stays there."""
     caught = np.logical_or.accumulate((frames.x_m > 0.75 * WIDTH) & (frames.z_m > 0.75 * HEIGHT), axis=0)
     when = np.argmax(caught, axis=0)[None]
-    frozen = []
-    for places in (frames.x_m, frames.z_m):
-        frozen.append(np.where(caught, np.take_along_axis(np.asarray(places), when, axis=0), places))
+    x, z = (
+        np.where(caught, np.take_along_axis(np.asarray(places), when, axis=0), places)
+        for places in (frames.x_m, frames.z_m)
+    )
     assert frames.vx_m_s is not None and frames.vz_m_s is not None
     vx, vz = (np.where(caught, 0.0, speed) for speed in (frames.vx_m_s, frames.vz_m_s))
-    return Frames(frames.times_s, *frozen, frames.cells, vx, vz)
+    return Frames(frames.times_s, x, z, frames.cells, vx, vz)
 
 
 def lifted(frames: Frames, share: float) -> Frames:
