@@ -11,7 +11,6 @@ import pandas as pd
 import yaml
 
 from bedchain.case import Case
-from bedchain.case_numbers import settled_height
 from bedchain.errors import CaseError, UserError
 from bedchain.parameters import GRAVITY_M_S2, weight_per_area
 from bedchain.stability.beds import Bed, case_of, changes
@@ -113,7 +112,7 @@ def observe(case: Case, series: pd.DataFrame) -> dict[str, float]:
     energy = particles["number"] * mass * GRAVITY_M_S2 * particles["diameter_m"]
     parts = ("weight_on_gas_1", "weight_on_floor_1", "weight_on_sides_1")
     means = late.mean(skipna=False)
-    return {
+    found = {
         "height_m": means["mean_height_m"],
         "carried_1": sum(means[part] for part in parts),
         "gas_share_1": means["weight_on_gas_1"],
@@ -124,10 +123,8 @@ def observe(case: Case, series: pd.DataFrame) -> dict[str, float]:
         "exchange_1": series["exchange_error_1"].abs().max(skipna=False),
         "clips_1": series["voidage_clips_1"].max(skipna=False),
         "lost_1": particles["number"] - series["particles_1"].min(skipna=False),
-        "settled_height_m": settled_height(
-            particles["number"], particles["diameter_m"], case["bed"]["width_m"]
-        ),
     }
+    return {name: float(value) for name, value in found.items()}
 
 
 def checks(observed: Mapping[str, float], expected: Expected, reference: Mapping[str, float]) -> list[Row]:

@@ -121,7 +121,7 @@ def draw_gas_steps(table: pd.DataFrame) -> Figure:
         axes.axvline(2.0, color=LINE_COLOUR, linewidth=0.9, linestyle="--")
         axes.loglog()
         axes.set_title(f"{name}, {share:g} of $u_{{mf}}$")
-        axes.set_xlabel("gas step over the drag's relaxation time of the gas [1]")
+        axes.set_xlabel("gas step over its drag relaxation time [1]")
     lines = [
         Line2D([], [], color=LINE_COLOUR, linewidth=0.9, label="refused above, Courant number 1"),
         Line2D([], [], color=LINE_COLOUR, linewidth=0.9, linestyle="--", label="explicit drag is unstable"),
