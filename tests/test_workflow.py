@@ -43,6 +43,8 @@ AUDIT = {"audit_scene"}  # reads neither time nor cells
 PARTICLES = AUDIT | {
     *("build_solver", "write_parameters", "run_dem", "parse_dumps", "repeat_dem", "measure_mixing"),
 }
+# of the target `tradeoff` only
+TRADEOFF = {"plot_tradeoff", "plot_variants"}
 # of the target `scores` only
 SCORES = {"score_models", "plot_pareto", "plot_best_mixing", "plot_autocorrelation"}
 WHOLE_BED = {"plot_snapshot"}  # needs particles and gas, no cells
@@ -344,7 +346,7 @@ def used_names(script: Path, kind: str) -> set[str]:
 
 def test_every_script_has_the_name_of_its_rule(rules):
     without_own_name = {"build_solver", "write_parameters", "run_dem", "repeat_dem"}
-    assert set(rules) == (ALL | SCORES | {"validate_bed", "write_agreement"}) - without_own_name
+    assert set(rules) == (ALL | SCORES | TRADEOFF | {"validate_bed", "write_agreement"}) - without_own_name
     for name, rule in rules.items():
         assert Path(rule.script).name == f"{name}.py"
 
