@@ -236,7 +236,8 @@ rule study_tradeoff:
         folder=subpath(output.table, parent=True),
         variants=" ".join(VARIANTS),
     shell:
-        "python scripts/study_tradeoff.py {input.case} {params.folder} --log {log} --variants {params.variants}"
+        "python scripts/study_tradeoff.py {input.case} {params.folder} --log {log} --at-once {threads}"
+        " --variants {params.variants}"
 
 
 rule plot_tradeoff:

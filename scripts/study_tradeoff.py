@@ -130,10 +130,11 @@ def main() -> None:
     parser.add_argument("case", type=Path, help="the case file")
     parser.add_argument("folder", type=Path, help="results/<case>")
     parser.add_argument("--variants", nargs="*", default=[], metavar="NAME", help="beds to simulate")
+    parser.add_argument("--at-once", type=int, default=2, metavar="N", help="of them side by side")
     parser.add_argument("--log", type=Path, default=Path("study_tradeoff.log"), help="log file")
     given = parser.parse_args()
     with stage(given.log):
-        study_tradeoff(given.case, given.folder, given.variants)
+        study_tradeoff(given.case, given.folder, given.variants, given.at_once)
 
 
 if __name__ == "__main__":

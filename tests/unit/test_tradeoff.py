@@ -197,6 +197,7 @@ def front_table():
     )
     table["model"] = ["dynamic" if axis == ORDER else "static" for axis in table["axis"]]
     table["cell_width_m"], table["cell_height_m"], table["lag_s"] = 0.01, 0.01, 0.025
+    table["density_floors_1"] = 1.5
     table["mixing_floors_1"] = np.linspace(3, 1, len(table))
     return table
 
@@ -235,7 +236,7 @@ def test_presets_are_written_as_a_case_reads_them(tmp_path):
     assert list(found) == ["fast", "balanced", "accurate"]
     assert found["fast"] == {
         "cell_m": 0.01, "lag_s": 0.025, "model": "static", "cost_s": 0.004, "error_floors": 2.71,
-        "measured_on": "a bed; a machine",
+        "density_floors": 1.5, "measured_on": "a bed; a machine",
     }  # fmt: skip
     assert found["accurate"]["model"] == "dynamic" and found["accurate"]["error_floors"] is None
 

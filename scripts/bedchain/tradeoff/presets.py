@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Three settings chosen by what was measured: fast, balanced and accurate, by validation alone.
 
-The errors that decide are those over the last part of the learning window, of chains learned on its first
-part. The comparison window decides nothing; the errors found there are reported.
+The errors that decide are those in parts of the learning window of chains learned on the rest of it. The
+comparison window decides nothing; the errors found there are reported.
 """
 
 from pathlib import Path
@@ -106,19 +106,20 @@ def nominal_cell(columns: int, rows: int, own: Own) -> float:
 def _preset(row: "pd.Series[Any]", own: Own, measured_on: str) -> dict[str, Any]:
     columns = round(own.grid.width_m / row["cell_width_m"])
     rows = round(own.grid.height_m / row["cell_height_m"])
-    floors = float(row["mixing_floors_1"])
+    floors = {name: _rounded(float(row[f"{name}_floors_1"])) for name in ("mixing", "density")}
     return {
         "cell_m": float(f"{nominal_cell(columns, rows, own):.6g}"),
         "lag_s": float(f"{row['lag_s']:.6g}"),
         "model": str(row["model"]),
         "cost_s": _rounded(row[COST]),
-        "error_floors": _rounded(floors) if np.isfinite(floors) else None,
+        "error_floors": floors["mixing"],
+        "density_floors": floors["density"],
         "measured_on": measured_on,
     }
 
 
-def _rounded(value: float) -> float:
-    return float(f"{value:.{DIGITS}g}")
+def _rounded(value: float) -> float | None:
+    return float(f"{value:.{DIGITS}g}") if np.isfinite(value) else None
 
 
 def _unit(values: NDArray[np.float64]) -> NDArray[np.float64]:
