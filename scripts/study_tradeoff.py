@@ -108,8 +108,8 @@ def opened(case: Case, folder: Path) -> tuple[chain_half.Bench, list[Path]]:
     own = Own(grid, lag, case["chain"]["estimator"], learning, length, run.interval_s,
               case["particles"]["diameter_m"], splits, models)  # fmt: skip
     task = Task(grid, splits, own.estimator, spacing, length)
-    seed = case["chain"]["seed"]
-    return chain_half.Bench(run, own, task, reference, tuple(starts), seed), [main, *mixing, *series]
+    folds, seed = chain_half.folds(run, learning, task), case["chain"]["seed"]
+    return chain_half.Bench(run, own, task, reference, folds, tuple(starts), seed), [main, *mixing, *series]
 
 
 def say(reference: Reference, runs: list[Run], starts: list[Start]) -> None:

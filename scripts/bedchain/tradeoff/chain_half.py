@@ -38,6 +38,30 @@ MB = 1e6
 
 
 @dataclass(frozen=True)
+class Fold:
+    """Parts of the learning window to learn from and to judge on.
+
+    Parameters
+    ----------
+    fit : slice
+        Frames of the run.
+    starts : tuple of Start
+        In the other part.
+    observed : tuple of (length, 4) array
+        The run's mixing curves from each start, from the next frame on [1].
+    """
+
+    fit: slice
+    starts: tuple[Start, ...]
+    observed: tuple[Array, ...]
+
+    @property
+    def longest(self) -> int:
+        """Frames that a chain may look back and ahead in any start [1]."""
+        return min(self.fit.stop - 1 - self.fit.start, *(start.length for start in self.starts))
+
+
+@dataclass(frozen=True)
 class Bench:
     """What all settings share.
 
@@ -50,6 +74,7 @@ class Bench:
     task : Task
     reference : Reference
         Its curves are of `starts`.
+    folds : tuple of Fold
     starts : tuple of Start
         Of the run: one for all curves of the reference, or one for each of them.
     seed : int
@@ -60,6 +85,7 @@ class Bench:
     own: Own
     task: Task
     reference: Reference
+    folds: tuple[Fold, ...]
     starts: tuple[Start, ...]
     seed: int
 
@@ -171,19 +197,18 @@ def validated(setting: Setting, bench: Bench, frames: Frames) -> Row:
         window, for a Monte Carlo, and where the lag is too long.
     """
     learning, lag = bench.own.learning, setting.lag
+    whole = (setting.first, setting.last) == (learning.start, learning.stop - 1)
+    reach = lag * (2 if setting.model == "dynamic" else 1)
+    if setting.tracers or not whole or reach > min(fold.longest for fold in bench.folds):
+        return {}
     task = replace(bench.task, estimator=setting.estimator)
     error = []
-    for fit, rest in folds(learning):
-        starts = starts_in(rest, task.spacing)
-        longest = min(fit.stop - 1 - fit.start, *(start.length for start in starts))
-        whole = (setting.first, setting.last) == (learning.start, learning.stop - 1)
-        if setting.tracers or not whole or lag * (2 if setting.model == "dynamic" else 1) > longest:
-            return {}
-        part = frames.part(slice(fit.start - learning.start, fit.stop - learning.start))
+    for fold in bench.folds:
+        part = frames.part(slice(fold.fit.start - learning.start, fold.fit.stop - learning.start))
         chain = learned(setting.candidate, part, task)
         error += [
-            predicted(chain, bench, start, lag)[1:] - observed_curves(bench.run, start, task.splits)[1:]
-            for start in starts
+            predicted(chain, bench, start, lag)[1:] - observed
+            for start, observed in zip(fold.starts, fold.observed, strict=True)
         ]
     table = stacked(error)
     weights = resampled(np.zeros(len(table), np.int64), REPLICATES, np.random.default_rng(INTERVAL_SEED))
@@ -192,11 +217,28 @@ def validated(setting: Setting, bench: Bench, frames: Frames) -> Row:
     return dict(zip(names, (float(rms(table)), low, high), strict=True))
 
 
-def folds(learning: slice) -> list[tuple[slice, slice]]:
-    """Frames to learn from and frames to judge on: `starts.split`, and the same from the window's end."""
+def folds(run: Run, learning: slice, task: Task) -> tuple[Fold, ...]:
+    """The two of `starts.split`: the window's last part judged, and as long a first part.
+
+    Parameters
+    ----------
+    run : Run
+    learning : slice
+        Frames of the learning window.
+    task : Task
+
+    Raises
+    ------
+    UserError
+        The window is too short.
+    """
     fit, rest = split(learning)
     cut = learning.start + rest.stop - 1 - rest.start
-    return [(fit, rest), (slice(cut, learning.stop), slice(learning.start, cut + 1))]
+    made = []
+    for part, judged in ((fit, rest), (slice(cut, learning.stop), slice(learning.start, cut + 1))):
+        starts = tuple(starts_in(judged, task.spacing))
+        made.append(Fold(part, starts, tuple(observed_curves(run, one, task.splits)[1:] for one in starts)))
+    return tuple(made)
 
 
 def predicted(
