@@ -171,6 +171,16 @@ def test_what_the_archive_cannot_serve_stops_before_anything(with_archive):
     assert "Traceback" not in done.stderr and not (with_archive / "results").exists()
 
 
+def test_the_tradeoff_simulates_variants_only_of_what_is_simulated(with_archive):
+    chains = {"study_tradeoff", "plot_tradeoff", "unpack_reference", "tradeoff"}
+    assert set(planned(with_archive, "tradeoff")) == chains
+    jobs = set(planned(with_archive, "tradeoff", "--config", "reference=simulate", "tradeoff={dem: [base]}"))
+    assert jobs == PARTICLES - AUDIT | TRADEOFF | chains - {"unpack_reference"}
+    done = snakemake(with_archive, "--dry-run", "--config", "tradeoff={dem: [basis]}")
+    assert done.returncode != 0 and "no variant basis; take of" in done.stderr and "base" in done.stderr
+    assert "Traceback" not in done.stderr
+
+
 def test_a_scene_without_gas_asks_for_nothing_of_openfoam(finished, tmp_path):
     for name in set(COPIED) - {"openfoam_case"}:
         (tmp_path / name).parent.mkdir(parents=True, exist_ok=True)

@@ -102,7 +102,8 @@ def curve_errors(reference: Reference, curves: Array) -> Row:
     own = np.tile(np.arange(shape[1]), shape[0])
     run = own if reference.repeated else np.zeros(len(own), np.int64)
     weights = resampled(run, REPLICATES, np.random.default_rng(INTERVAL_SEED))
-    floors, found = reference.floors(), {}
+    floors = reference.floors()
+    found: Row = {}
     for name in CURVES:
         part = error[..., list(SIDES[name])]
         ends = interval(rms, part, weights)
@@ -149,7 +150,8 @@ def scalar_errors(reference: Reference, scalars: dict[str, float]) -> Row:
         As `columns`; the interval is what the difference of a single further realisation from the mean of n
         would be given (Student's t, n - 1 degrees of freedom), NaN without repeats.
     """
-    floors, found = reference.floors(), {}
+    floors = reference.floors()
+    found: Row = {}
     for name in SCALARS:
         known = np.array(reference.scalars.get(name, ()), float)
         known = known[np.isfinite(known)]
