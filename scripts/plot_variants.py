@@ -8,7 +8,7 @@ import numpy as np
 import pandas as pd
 from matplotlib import pyplot as plt
 from matplotlib.axes import Axes
-from matplotlib.ticker import NullFormatter
+from matplotlib.ticker import LogLocator, NullLocator
 
 from bedchain.errors import UserError
 from bedchain.figures import DOUBLE_COLUMN_IN, figure_style, save_figure
@@ -18,8 +18,8 @@ from bedchain.stage import stage, write_csv
 TITLES = {
     "mixing": "mixing\ncurves",
     "density": "density",
-    "mixing_time_radial": "mixing time,\nradial",
-    "mixing_time_axial": "mixing time,\naxial",
+    "mixing_time_radial": "mixing\ntime,\nradial",
+    "mixing_time_axial": "mixing\ntime,\naxial",
     "bed_height": "bed\nheight",
     "pressure_drop": "pressure\ndrop",
     "pressure_drop_spread": "its\nspread",
@@ -29,7 +29,7 @@ TITLES = {
 }
 COLOURS, COST_COLOUR, LINE_IN = "RdBu_r", "#4477aa", 0.19
 # colours end here, numbers do not
-MOST_FLOORS = 10.0
+MOST_FLOORS = 15.0
 REASON_LETTERS = 110
 
 
@@ -87,12 +87,12 @@ def shown_rows(table: pd.DataFrame) -> pd.DataFrame:
 
 def _draw_changes(axes: Axes, table: pd.DataFrame) -> None:
     values = table[[f"{name}_floors_1" for name in TITLES]].to_numpy(float)
-    norm = mpl.colors.SymLogNorm(1.0, vmin=-MOST_FLOORS, vmax=MOST_FLOORS)
+    norm = mpl.colors.Normalize(-MOST_FLOORS, MOST_FLOORS)
     axes.imshow(values, aspect="auto", cmap=COLOURS, norm=norm)
     for (row, column), value in np.ndenumerate(values):
         if np.isfinite(value):
             colour = "white" if abs(value) > 0.6 * MOST_FLOORS else "black"
-            axes.text(column, row, f"{value:.2g}", ha="center", va="center", fontsize=6, color=colour)
+            axes.text(column, row, f"{value:.1f}", ha="center", va="center", fontsize=6, color=colour)
     for row, problem in enumerate(table["problem"]):
         if isinstance(problem, str):
             said = " ".join(problem.split())[:REASON_LETTERS]
@@ -111,8 +111,10 @@ def _draw_costs(axes: Axes, table: pd.DataFrame) -> None:
     axes.plot(values, table.index, "o", ms=4, color=COST_COLOUR)
     if known:
         axes.axvline(1.0, color="black", lw=0.6)
-    axes.set(xscale="log", xlabel="cost over the case's own [1]" if known else "cost [s]")
-    axes.xaxis.set_minor_formatter(NullFormatter())
+    axes.set(xscale="log", xlabel="cost over\nbase [1]" if known else "cost [s]")
+    axes.xaxis.set_major_locator(LogLocator(subs=(1, 2, 5)))
+    axes.xaxis.set_major_formatter("{x:g}")
+    axes.xaxis.set_minor_locator(NullLocator())
     axes.grid(axis="y", color="#e2e2e2", linewidth=0.5)
     axes.tick_params(labelleft=False)
 
