@@ -3,6 +3,9 @@
 #   verify    the solvers against theory                 peers    bedFoam beside other codes
 #   validate  a case against its measured profiles       scores   all chains, chosen by validation, tested once
 #   estimate  what a case will cost, before it runs      stability solvers and chains at their extremes
+#   tradeoff  what accuracy costs, of chains and of simulated beds; the presets of `fidelity`
+from bedchain.tradeoff.bed_variants import variants_or_exit
+
 SCORE_PLOTS = ["fig_pareto", "fig5_best", "fig_autocorrelation", "fig_distribution_best"]
 
 
@@ -255,3 +258,98 @@ rule estimate_cost:
         ),
     script:
         "estimate_cost.py"
+
+
+# What accuracy costs: chains of many settings, and the bed simulated in many ways. What was finished is kept.
+#   snakemake --cores 2 tradeoff --config tradeoff='{dem: [base, friction_0]}'     (or all, none)
+VARIANTS = variants_or_exit(config.get("tradeoff"), CASE, bool(REFERENCE))
+TRADEOFF_PLOTS = ["fig_tradeoff", *(["fig_tradeoff_dem"] if VARIANTS else [])]
+
+
+rule tradeoff:
+    input:
+        f"{RESULTS}/presets.yaml",
+        expand(f"{FIGURES}/{{name}}{{form}}", name=TRADEOFF_PLOTS, form=FORMS.values()),
+
+
+# Alone on the machine, since it measures times.
+rule study_tradeoff:
+    input:
+        modules("case", "candidates", "comparison", "dispersion", "distribution", "fidelity", "frames"),
+        modules(
+            "kept",
+            "models",
+            "noise",
+            "provenance",
+            "regrid",
+            "repeats",
+            "runs",
+            "scores",
+            "selection",
+            "stage",
+            "starts",
+        ),
+        modules("trajectory", "trial", "variants"),
+        source_files("scripts/bedchain/tradeoff", "*.py"),
+        **TRAJECTORY,
+        case=ancient(f"cases/{NAME}/case.yaml"),
+        bed_series=RUN["bed_series"],
+        repeats=expand(rules.measure_mixing.output.mixing, repeat=REPEATS),
+        # an archive keeps the repeats' curves, not their positions
+        moving=expand(f"{BED}/repeats/{{repeat}}/trajectory.npy", repeat=[] if REFERENCE else REPEATS),
+        # the variants are simulated by the same solvers
+        solver=rules.run_dem.input.solver if VARIANTS else [],
+        decks=rules.run_dem.input.decks if VARIANTS else [],
+        blocks=rules.run_dem.input.blocks if VARIANTS else [],
+        gas=rules.run_dem.input.gas if VARIANTS else [],
+    output:
+        table=f"{RESULTS}/tradeoff.csv",
+        presets=f"{RESULTS}/presets.yaml",
+    log:
+        f"{LOGS}/study_tradeoff.log",
+    benchmark:
+        f"{BENCHMARKS}/study_tradeoff.tsv"
+    conda:
+        "../envs/python.yaml"
+    threads: workflow.cores or 1
+    params:
+        **pick(CASE, "cells", "chain.lag_s", "chain.models", "chain.estimator", "chain.seed", "mixing"),
+        learning=CASE["learning"],
+        comparison=pick(CASE, "comparison.start_s", "comparison.end_s"),
+        folder=subpath(output.table, parent=True),
+        variants=" ".join(VARIANTS),
+    shell:
+        "python scripts/study_tradeoff.py {input.case} {params.folder} --log {log} --at-once {threads}"
+        " --variants {params.variants}"
+
+
+rule plot_tradeoff:
+    input:
+        modules("errors", "figures", "stage"),
+        tradeoff=rules.study_tradeoff.output.table,
+    output:
+        multiext(f"{FIGURES}/fig_tradeoff", **FORMS),
+    log:
+        f"{LOGS}/plot_tradeoff.log",
+    conda:
+        "../envs/python.yaml"
+    params:
+        **pick(CASE, "figures.resolution_dpi"),
+    script:
+        "plot_tradeoff.py"
+
+
+rule plot_variants:
+    input:
+        modules("errors", "figures", "stage"),
+        tradeoff=rules.study_tradeoff.output.table,
+    output:
+        multiext(f"{FIGURES}/fig_tradeoff_dem", **FORMS),
+    log:
+        f"{LOGS}/plot_variants.log",
+    conda:
+        "../envs/python.yaml"
+    params:
+        **pick(CASE, "figures.resolution_dpi"),
+    script:
+        "plot_variants.py"

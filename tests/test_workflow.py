@@ -4,6 +4,7 @@
 import json
 import os
 import re
+import shlex
 import shutil
 import subprocess
 import sys
@@ -43,6 +44,8 @@ AUDIT = {"audit_scene"}  # reads neither time nor cells
 PARTICLES = AUDIT | {
     *("build_solver", "write_parameters", "run_dem", "parse_dumps", "repeat_dem", "measure_mixing"),
 }
+# of the target `tradeoff` only
+TRADEOFF = {"plot_tradeoff", "plot_variants"}
 # of the target `scores` only
 SCORES = {"score_models", "plot_pareto", "plot_best_mixing", "plot_autocorrelation"}
 WHOLE_BED = {"plot_snapshot"}  # needs particles and gas, no cells
@@ -50,7 +53,16 @@ WHOLE_BED = {"plot_snapshot"}  # needs particles and gas, no cells
 
 def snakemake(folder: Path, *arguments: str, config: str = "case=short") -> subprocess.CompletedProcess[str]:
     """Run snakemake in a folder; its own caches stay in there."""
-    command = [sys.executable, "-m", "snakemake", "--cores", "2", *arguments, "--config", *config.split()]
+    command = [
+        sys.executable,
+        "-m",
+        "snakemake",
+        "--cores",
+        "2",
+        *arguments,
+        "--config",
+        *shlex.split(config),
+    ]
     environment = os.environ | {"XDG_CACHE_HOME": str(folder / ".cache"), "PYTHONDONTWRITEBYTECODE": "1"}
     return subprocess.run(command, cwd=folder, env=environment, capture_output=True, text=True, check=False)
 
@@ -209,6 +221,18 @@ def test_an_estimate_makes_nothing_else(finished, tmp_path):
         (tmp_path / name).parent.mkdir(parents=True, exist_ok=True)
         (tmp_path / name).symlink_to(finished / name)
     assert planned(tmp_path, "estimate") == {"estimate": 1, "estimate_cost": 1}
+
+
+def test_the_tradeoff_simulates_variants_only_of_what_is_simulated(with_archive):
+    chains = {"study_tradeoff", "plot_tradeoff", "unpack_reference", "tradeoff"}
+    assert set(planned(with_archive, "tradeoff")) == chains
+    jobs = set(
+        planned(with_archive, "tradeoff", config="case=short reference=simulate 'tradeoff={dem: [base]}'")
+    )
+    assert jobs == PARTICLES - AUDIT | TRADEOFF | chains - {"unpack_reference"}
+    done = snakemake(with_archive, "--dry-run", config="case=short 'tradeoff={dem: [basis]}'")
+    assert done.returncode != 0 and "no variant basis; take of" in done.stderr and "base" in done.stderr
+    assert "Traceback" not in done.stderr
 
 
 def test_a_scene_without_gas_asks_for_nothing_of_openfoam(finished, tmp_path):
@@ -386,9 +410,8 @@ def used_names(script: Path, kind: str) -> set[str]:
 
 def test_every_script_has_the_name_of_its_rule(rules):
     without_own_name = {"build_solver", "write_parameters", "run_dem", "repeat_dem"}
-    assert (
-        set(rules) == (ALL | SCORES | {"validate_bed", "write_agreement", "estimate_cost"}) - without_own_name
-    )
+    others = {"validate_bed", "write_agreement", "estimate_cost"}
+    assert set(rules) == (ALL | SCORES | TRADEOFF | others) - without_own_name
     for name, rule in rules.items():
         assert Path(rule.script).name == f"{name}.py"
 

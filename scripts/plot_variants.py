@@ -1,0 +1,130 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""What each choice in simulating a bed changes, in noise floors, and what it costs."""
+
+from pathlib import Path
+
+import matplotlib as mpl
+import numpy as np
+import pandas as pd
+from matplotlib import pyplot as plt
+from matplotlib.axes import Axes
+from matplotlib.ticker import LogLocator, NullLocator
+
+from bedchain.errors import UserError
+from bedchain.figures import DOUBLE_COLUMN_IN, figure_style, save_figure
+from bedchain.stage import stage, write_csv
+
+# heads of the columns; the first two have no sign
+TITLES = {
+    "mixing": "mixing\ncurves",
+    "density": "density",
+    "mixing_time_radial": "mixing\ntime,\nradial",
+    "mixing_time_axial": "mixing\ntime,\naxial",
+    "bed_height": "bed\nheight",
+    "pressure_drop": "pressure\ndrop",
+    "pressure_drop_spread": "its\nspread",
+    "dispersion_x": "dispersion\nx",
+    "dispersion_z": "dispersion\nz",
+    "granular_temperature": "granular\ntemperature",
+}
+COLOURS, COST_COLOUR, LINE_IN = "RdBu_r", "#4477aa", 0.19
+# colours end here, numbers do not
+MOST_FLOORS = 15.0
+REASON_LETTERS = 110
+
+
+def plot_variants(tradeoff: Path, png: Path, pdf: Path, csv: Path, resolution_dpi: int) -> None:
+    """Draw one line a variant: its change of each observable, and its cost over that of the case itself.
+
+    Parameters
+    ----------
+    tradeoff : Path
+        ``tradeoff.csv``.
+    png, pdf, csv : Path
+        Figure in two forms, and the numbers behind it.
+    resolution_dpi : int
+        Of the png [dots per inch].
+
+    Raises
+    ------
+    UserError
+        No bed was simulated.
+    """
+    table = shown_rows(pd.read_csv(tradeoff, dtype={"problem": str}))
+    if table.empty:
+        raise UserError(f"{tradeoff} holds no simulated bed: take --config tradeoff='{{dem: all}}'")
+    with figure_style():
+        figure, (axes, costs) = plt.subplots(
+            1, 2, figsize=(DOUBLE_COLUMN_IN, 1.2 + LINE_IN * len(table)), width_ratios=[5, 1], sharey=True
+        )
+        _draw_changes(axes, table)
+        _draw_costs(costs, table)
+        save_figure(figure, png, pdf, resolution_dpi)
+    write_csv(table, csv)
+
+
+def shown_rows(table: pd.DataFrame) -> pd.DataFrame:
+    """Variants by axis, with the changes that are drawn.
+
+    Returns
+    -------
+    DataFrame
+        axis, variant, changed, problem, cost_s, cost_over_base_1 and the observables of `TITLES` in noise
+        floors.
+    """
+    beds = table[table["half"] == "dem"]
+    order = {
+        axis: number for number, axis in enumerate(dict.fromkeys(["realisation", *sorted(set(beds["axis"]))]))
+    }
+    beds = beds.assign(order=beds["axis"].map(order)).sort_values(["order", "variant"], kind="stable")
+    base = beds.loc[beds["variant"] == "base", "cost_s"]
+    found = beds[["axis", "variant", "changed", "problem", "cost_s"]].copy()
+    found["cost_over_base_1"] = beds["cost_s"] / (base.iloc[0] if len(base) else np.nan)
+    for name in TITLES:
+        found[f"{name}_floors_1"] = beds[f"{name}_floors_1"]
+    return found.reset_index(drop=True)
+
+
+def _draw_changes(axes: Axes, table: pd.DataFrame) -> None:
+    values = table[[f"{name}_floors_1" for name in TITLES]].to_numpy(float)
+    norm = mpl.colors.Normalize(-MOST_FLOORS, MOST_FLOORS)
+    axes.imshow(values, aspect="auto", cmap=COLOURS, norm=norm)
+    for (row, column), value in np.ndenumerate(values):
+        if np.isfinite(value):
+            colour = "white" if abs(value) > 0.6 * MOST_FLOORS else "black"
+            axes.text(column, row, f"{value:.1f}", ha="center", va="center", fontsize=6, color=colour)
+    for row, problem in enumerate(table["problem"]):
+        if isinstance(problem, str):
+            said = " ".join(problem.split())[:REASON_LETTERS]
+            axes.text(-0.4, row, said, va="center", fontsize=5, color="#882222", clip_on=True)
+    axes.set_xticks(range(len(TITLES)), TITLES.values(), fontsize=6)
+    axes.xaxis.tick_top()
+    axes.set_yticks(range(len(table)), table["variant"].str.replace("_", " "), fontsize=6)
+    axes.set_title("change in noise floors (the first two without a sign)", loc="left")
+    for row in np.flatnonzero((table["axis"] != table["axis"].shift()).to_numpy())[1:]:
+        axes.axhline(row - 0.5, color="black", lw=0.4)
+
+
+def _draw_costs(axes: Axes, table: pd.DataFrame) -> None:
+    known = table["cost_over_base_1"].notna().any()
+    values = table["cost_over_base_1"] if known else table["cost_s"]
+    axes.plot(values, table.index, "o", ms=4, color=COST_COLOUR)
+    if known:
+        axes.axvline(1.0, color="black", lw=0.6)
+    axes.set(xscale="log", xlabel="cost over\nbase [1]" if known else "cost [s]")
+    axes.xaxis.set_major_locator(LogLocator(subs=(1, 2, 5)))
+    axes.xaxis.set_major_formatter("{x:g}")
+    axes.xaxis.set_minor_locator(NullLocator())
+    axes.grid(axis="y", color="#e2e2e2", linewidth=0.5)
+    axes.tick_params(labelleft=False)
+
+
+if "snakemake" in globals():
+    with stage(snakemake.log[0]):
+        plot_variants(
+            Path(snakemake.input.tradeoff),
+            Path(snakemake.output.png),
+            Path(snakemake.output.pdf),
+            Path(snakemake.output.csv),
+            snakemake.params.resolution_dpi,
+        )

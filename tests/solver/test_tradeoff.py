@@ -1,0 +1,58 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Variants of a tiny bed by the real solvers: one that runs, one that they stop, and what is kept."""
+
+import numpy as np
+import pytest
+import yaml
+from conftest import ROOT, TINY
+
+from bedchain.case import load_case
+from bedchain.tradeoff.bed_half import PEAK_FILE, simulate_all
+from bedchain.tradeoff.bed_variants import BedVariant, bed_variants
+from bedchain.variants import Variant
+from measure_mixing import measure_mixing
+from parse_dumps import parse_dumps
+from run_dem import repeat_dem, run_dem
+from study_tradeoff import opened
+from write_parameters import write_parameters
+
+# a run of a few hundred particles: its solvers' peak is that of their libraries
+LEAST_MB, MOST_MB = 5.0, 500.0
+
+
+@pytest.fixture
+def bed(solver, tmp_path, monkeypatch):
+    """Case file and folder of a tiny bed with one repeat, as far as the study needs them."""
+    monkeypatch.chdir(ROOT)
+    file, folder = tmp_path / "tiny.yaml", tmp_path / "tiny"
+    file.write_text(yaml.safe_dump(TINY | {"comparison": TINY["comparison"] | {"repeats": 1}}))
+    write_parameters(file, folder)
+    time = TINY["time"]
+    run_dem(folder, time["end_s"], time["segment_s"], 1)
+    repeat_dem(folder, TINY["comparison"]["start_s"], time["end_s"], time["segment_s"], 1, 1)
+    for path in (folder, folder / "repeats" / "1"):
+        files = path / "trajectory.npy", path / "trajectory.json"
+        parse_dumps(path / "dem.json", *files, **TINY["bed"], progress=False)
+    measure_mixing(*files, path / "mixing.csv", "dem_1", *TINY["comparison"].values(), 0.01, 0.01)
+    return file, folder
+
+
+def test_variants_run_fail_and_are_not_run_again(bed, tmp_path):
+    file, folder = bed
+    case = load_case(file)
+    bench, _ = opened(case, folder)
+    wanted = [
+        bed_variants(case)["friction_0.3"],
+        BedVariant("contact", Variant("overlap", {"contact.largest_overlap_1": 1e-6})),
+    ]
+    good, stopped = simulate_all(file, wanted, tmp_path / "tradeoff", bench.reference, at_once=2)
+    assert good["problem"] == "" and good["cost_s"] > 0 and LEAST_MB < good["memory_mb"] < MOST_MB
+    for name in ("mixing", "density", "bed_height", "pressure_drop", "granular_temperature"):
+        assert np.isfinite(good[f"{name}_floors_1"])
+    assert abs(good["bed_height_error_m"]) < 0.1 * bench.reference.scalars["bed_height"][0]
+    assert "overlap" in stopped["problem"] and "cost_s" not in stopped
+    state = tmp_path / "tradeoff" / "friction_0.3"
+    before = {path: path.stat().st_mtime_ns for path in (state / "dem").rglob("*/*") if path.is_file()}
+    (again,) = simulate_all(file, wanted[:1], tmp_path / "tradeoff", bench.reference, at_once=1)
+    assert {path: path.stat().st_mtime_ns for path in before} == before
+    assert (state / PEAK_FILE).exists() and again == good
