@@ -184,15 +184,12 @@ def packing() -> Iterator[Setting]:
     def full(number: int) -> Limit:
         return Limit("particles [1]", most, "0.7 H W 0.82 / (pi d^2 / 4)", number)
 
-    def thin(thickness: float) -> Limit:
-        return Limit("d over thickness [1]", math.sqrt(1.5), "T >= sqrt(2/3) d", 1 / thickness)
-
     for number in (most, most + 1):
         yield of("packing", f"{number} particles", Bed(number=number), full(number), Expected())
     for thickness in (THINNEST, 0.8):
         bed = Bed(thickness=thickness)
         bed = replace(bed, velocity=FIXED * theory.fluidization(scene(bed)))
-        yield of("packing", f"slab of {thickness:g} d", bed, thin(thickness), Expected())
+        yield of("packing", f"slab of {thickness:g} d", bed, _thin_limit(thickness), Expected())
     one = Bed(number=1)
     lonely = Expected(moving=True, height_m=one.diameter / 2)  # it rolls from wall to wall
     yield of("packing", "one particle", one, full(1), lonely, reduced=True)
@@ -200,6 +197,10 @@ def packing() -> Iterator[Setting]:
     limit = theory.velocity_limit(scene(blown))
     yield of("packing", "one particle at 1.5 u_t", blown, limit, Expected(moving=True), reduced=True)
     yield of("packing", "no particle", Bed(number=0), full(0), Expected(), reduced=True)
+
+
+def _thin_limit(thickness: float) -> Limit:
+    return Limit("d over thickness [1]", math.sqrt(1.5), "T >= sqrt(2/3) d", 1 / thickness)
 
 
 def gas_cell() -> Iterator[Setting]:
@@ -235,17 +236,14 @@ def ranks() -> Iterator[Setting]:
 
 def guards() -> Iterator[Setting]:
     """The same setting with a guard and without it."""
-    soft = Bed(thickness=THINNEST, cell=2, more={"gas": {"smoothing_diameters_1": 0}})
+    soft = Bed(thickness=THINNEST)
     share = theory.overlap_at_rest(scene(soft), soft.number)
     soft = replace(soft, young=soft.stiffness * (share / (0.95 * OVERLAP_AT_REST_MAX)) ** 1.5)
     soft = replace(soft, velocity=FIXED * theory.fluidization(scene(soft)))
-    smooth = replace(soft, cell=5, more={})
-    yield of("guards", "soft bed in a thin slab", smooth, _cell_limit(smooth), Expected())
-    counted = replace(soft, more={"gas": {"smoothing_diameters_1": 0, "voidage_clip": "count"}})
-    expected = Expected(reference="soft bed in a thin slab", share_tolerance=CELL_SHARE)
+    counted = replace(soft, more={"gas": {"voidage_clip": "count"}})
     for bed, told in ((soft, ON), (counted, "gas.voidage_clip: count")):
-        name = f"soft bed in a thin slab, gas cells of 2 d{'' if told == ON else ', guard off'}"
-        yield of("guards", name, bed, _cell_limit(bed), expected, told)
+        name = f"soft bed in a thin slab{'' if told == ON else ', guard off'}"
+        yield of("guards", name, bed, _thin_limit(THINNEST), Expected(), told)
     long = Bed(allowed=True)
     long = replace(long, dem_step=two_digits(UNSTABLE * theory.rayleigh(scene(long))))
     limit = theory.dem_step_limit(scene(long), clock(long)["dem_step_s"])
