@@ -51,7 +51,9 @@ def estimate_cost(
     found = compared(expected, happened(case, bed, table.parent, benchmarks))
     write_csv(found.reset_index(), table)
     with complete(text) as temporary:
-        temporary.write_text("\n".join([*header(case, speed.source), lines(found), ""]), encoding="utf-8")
+        temporary.write_text(
+            "\n".join([*header(case, speed.source, archived), lines(found), ""]), encoding="utf-8"
+        )
     for name in outside(found):
         LOG.info(
             "%s came out %.2f times as long as estimated, more than %g",
@@ -61,9 +63,11 @@ def estimate_cost(
         )
 
 
-def header(case: Case, source: str) -> list[str]:
+def header(case: Case, source: str, archived: bool) -> list[str]:
     """What the estimate is of and rests on."""
     found = [f"{case['title']}, by {source}; stages one after the other, without figures and diagnostics"]
+    if archived:
+        found.append("the bed comes out of its archive; --config reference=simulate estimates its simulation")
     if (busy := os.getloadavg()[0]) > BUSY_CORES:
         found.append(
             f"other programs keep {busy:.1f} of {os.cpu_count()} cores busy now: it would take longer"

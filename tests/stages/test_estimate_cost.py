@@ -26,10 +26,10 @@ def estimate(case, tmp_path):
     bed = tmp_path / "results" / "short"
     targets = bed / "estimate.csv", bed / "estimate.txt"
 
-    def run():
+    def run(archived=False):
         runs = sorted((tmp_path / "results").glob("*/dem.json"))
         benchmarks = dict.fromkeys(("bed", "made"), tmp_path / "benchmarks")
-        estimate_cost(case, bed, benchmarks, runs, False, tmp_path / "presets.yaml", *targets)
+        estimate_cost(case, bed, benchmarks, runs, archived, tmp_path / "presets.yaml", *targets)
         return pd.read_csv(targets[0]).set_index("stage"), targets[1].read_text()
 
     return run
@@ -66,3 +66,8 @@ def test_after_a_run_a_stage_far_from_its_estimate_is_named(case, estimate, tmp_
     assert after.loc["gas", "ratio_1"] == pytest.approx(expected, rel=1e-6)
     assert np.isfinite(before.loc["gas", "wall_s"])
     assert any(said.startswith("gas came out") for said in caplog.messages)
+
+
+def test_of_an_archived_bed_only_the_chains_are_estimated(estimate):
+    table, text = estimate(archived=True)
+    assert table.index[0] == "assign_cells" and "reference=simulate" in text

@@ -1,11 +1,11 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """The estimate: hand-worked rates, this machine's speed out of made runs, and what happened beside it."""
 
-import copy
 import json
 import math
 from pathlib import Path
 
+import numpy as np
 import pandas as pd
 import pytest
 
@@ -106,9 +106,8 @@ def test_pair_forces_against_a_loop():
             force = max(0.0, 1 - far) ** 1.5 * apart[axis] / far
             expected[one][axis] += force
             expected[two][axis] -= force
-    as_array = rates.np.array
-    first, second = as_array(pairs).T
-    assert rates.pair_forces(as_array(places), first, second) == pytest.approx(as_array(expected))
+    first, second = np.array(pairs).T
+    assert rates.pair_forces(np.array(places), first, second) == pytest.approx(np.array(expected))
 
 
 def test_a_job_costs_what_the_line_through_two_measured_ones_says(monkeypatch):
@@ -230,5 +229,5 @@ def test_errors_in_noise_floors_by_hand(tmp_path, short):
     assert errors_happened(file, "static") == pytest.approx(math.sqrt((9 + 1 + 1 + 1) / 4))
     assert math.isnan(errors_happened(file, "dynamic"))
     assert math.isnan(errors_happened(tmp_path / "none.csv", "static"))
-    found = happened(copy.deepcopy(short), tmp_path, tmp_path, folders(tmp_path))
+    found = happened(short, tmp_path, tmp_path, folders(tmp_path))
     assert found.loc["run_chain_static", "happened_error_floors"] == pytest.approx(math.sqrt(3))
