@@ -16,6 +16,11 @@ DIRECT_STATES = 10_000
 # What one step may change of a long-run density found by iteration.
 STATIONARY_TOLERANCE = 1e-9
 
+# states of a system that is solved by elimination: 80 000 of a dynamic chain fill gigabytes
+MOST_ELIMINATED = 10_000
+# of an iteration, relative to the right side
+ITERATION_ERROR = 1e-10
+
 
 def total_variation(one: NDArray[np.float64], two: NDArray[np.float64]) -> float:
     """Total-variation distance of two distributions over cells, each brought to sum 1; 0 to 1 [1]."""
@@ -145,9 +150,18 @@ def first_passage_steps(matrix: sparse.csr_array, target: NDArray[np.bool_]) -> 
     steps = np.where(target, 0.0, np.inf)
     inner = np.flatnonzero(~target & ~strays)
     if inner.size:
-        system = sparse.eye_array(inner.size) - matrix[inner][:, inner]
-        steps[inner] = linalg.spsolve(sparse.csc_array(system), np.ones(inner.size))
+        system = sparse.csc_array(sparse.eye_array(inner.size) - matrix[inner][:, inner])
+        steps[inner] = _solved(system, np.ones(inner.size))
     return steps
+
+
+def _solved(system: sparse.csc_array, right: NDArray[np.float64]) -> NDArray[np.float64]:
+    """Solution of a linear system: by elimination, or by iteration where its fill would take minutes."""
+    if right.size > MOST_ELIMINATED:
+        found, failed = linalg.bicgstab(system, right, rtol=ITERATION_ERROR, maxiter=right.size)
+        if not failed:
+            return np.asarray(found)
+    return np.asarray(linalg.spsolve(system, right))
 
 
 def _leads_to(
