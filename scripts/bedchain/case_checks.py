@@ -101,7 +101,9 @@ def particles_fit(
     if narrow:
         return
     settled = settled_height(number, diameter, width, thickness if many else None)
-    started = start_height(number, diameter, width, thickness) if many else 0
+    # What does not fit into the lattice that they start from would not be there at all
+    fits = width >= START_SPACING_DIAMETERS * diameter
+    started = start_height(number, diameter, width, thickness if many else None) if fits else 0
     needed = max(settled / FILLED_HEIGHT_MAX, started)
     if needed > height:
         wrong = f"{number} settle about {settled:.3g} m deep in a bed {height:g} m high"

@@ -20,7 +20,7 @@ from bedchain.case_numbers import contact_modulus, static_overlap
 from bedchain.errors import CaseError, Problem, UserError
 from bedchain.scene_checks import FREE_FALL_SHARE_MAX, GAS_CELL_MAX, OVERLAP_AT_REST_MAX
 from bedchain.stability import theory
-from bedchain.stability.bed_runs import Expected, checks, observe
+from bedchain.stability.bed_runs import Expected, checks, momentum, observe
 from bedchain.stability.bed_settings import bed_settings
 from bedchain.stability.beds import Bed, case_of, changes, clock, scene, times, two_digits
 from bedchain.stability.chain_settings import chain_settings
@@ -176,7 +176,7 @@ def test_numbers_have_few_digits_and_their_multiples_are_exact():
     [
         (Bed(young=5e3, dem_step=5e-5), "contact.young_modulus_Pa", {"young": 2e4}),
         (Bed(density=11.9, velocity=0.1), "gas.density_kg_m3", {"density": 12.1}),
-        (Bed(gas_step=1.2e-2), "time.gas_step_s", {"gas_step": 9e-3}),
+        (Bed(gas_step=1.2e-2), "time.gas_step_s", {"gas_step": 3e-3}),
         (Bed(cell=10), "gas.cell_size_m", {"cell": 5}),
         (Bed(dem_step=2.2e-5), "time.dem_step_s", {"dem_step": 2e-5}),
     ],
@@ -202,6 +202,21 @@ def test_the_limits_of_the_checks_are_those_of_the_theory():
     fast = theory.gas_step_limit(scene(Bed(velocity=5.0)), 1e-3)
     assert fast.share == pytest.approx(5.0 / 0.4 * 1e-3 / 5e-3)
     assert GAS_CELL_MAX == 0.5
+
+
+def test_a_layer_whose_lattice_is_higher_than_the_box_is_refused(tmp_path):
+    # 17 columns and 51 rows of 1.15 diameters; more would silently not be there
+    assert loaded(Bed(number=17 * 51), tmp_path)
+    with pytest.raises(CaseError, match="particles.number.*take at most"):
+        loaded(Bed(number=17 * 51 + 1), tmp_path)
+
+
+def test_what_must_be_carried_follows_from_the_motion():
+    times_s = np.linspace(0, 0.1, 21)
+    for carried in (0.0, 1.0, 2.5):
+        heights = 0.01 + 0.3 * times_s + (carried - 1) * 9.81 / 2 * times_s**2
+        series = pd.DataFrame({"time_s": times_s, "mean_height_m": heights})
+        assert momentum(series) == pytest.approx(carried)
 
 
 def test_one_particle_or_few_may_have_any_gas_cell(tmp_path):
@@ -232,7 +247,7 @@ def made_series(**columns):
         ({"weight_on_gas_1": 0.35, "weight_on_floor_1": 0.6}, "weight on the gas"),
         ({"volume_balance_1": 1e-3}, "gas balance"),
         ({"exchange_error_1": 1e-6}, "exchange"),
-        ({"pressure_drop_Pa": math.nan, "mean_height_m": math.nan}, "mean height"),
+        ({"pressure_drop_Pa": math.nan, "mean_height_m": math.nan}, "weight carried"),
     ],
 )
 def test_whatever_is_wrong_with_a_bed_is_seen(columns, said):

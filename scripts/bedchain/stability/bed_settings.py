@@ -7,8 +7,8 @@ from dataclasses import replace
 from functools import partial
 from pathlib import Path
 
-from bedchain.case_checks import FILLED_HEIGHT_MAX, RAYLEIGH_SHARE_MAX
-from bedchain.case_numbers import PACKED_AREA_SHARE, settled_height
+from bedchain.case_checks import RAYLEIGH_SHARE_MAX
+from bedchain.case_numbers import START_SPACING_DIAMETERS, settled_height
 from bedchain.scene_checks import GAS_CELL_MAX, OVERLAP_AT_REST_MAX
 from bedchain.scene_numbers import contact_duration, grain_velocity, terminal_velocity
 from bedchain.stability import theory
@@ -41,7 +41,7 @@ UNSTABLE = 1.5  # Rayleigh times
 STEP_GUARD = "time.allow_unstable_step: true"
 FINEST_CELL = 1.63  # diameters: Peng, Doroodchi, Luo, Moghtaderi 2014, AIChE J. 60, 2000
 THINNEST = 0.8165  # diameters, of a slab
-DEEP = Bed(number=1500, height=140)  # 72 diameters: higher than all gas cells
+DEEP = Bed(number=1500, height=140, settle=0.4)  # 72 diameters: higher than all gas cells
 CELL_SHARE = 0.2  # relative, of the weight on the gas: what cells of another size may make of it
 
 
@@ -179,10 +179,11 @@ def velocity() -> Iterator[Setting]:
 def packing() -> Iterator[Setting]:
     """A box as full as may be, over-full, a slab as thin as may be, thinner, one particle, none."""
     plain = Bed()
-    most = int(FILLED_HEIGHT_MAX * plain.width * plain.height * PACKED_AREA_SHARE / (math.pi / 4))
+    lattice = plain.width / int(plain.width / START_SPACING_DIAMETERS)
+    most = int(plain.width / START_SPACING_DIAMETERS) * int(plain.height / lattice)
 
     def full(number: int) -> Limit:
-        return Limit("particles [1]", most, "0.7 H W 0.82 / (pi d^2 / 4)", number)
+        return Limit("particles [1]", most, "sites of the lattice of 1.15 d that they fall from", number)
 
     for number in (most, most + 1):
         yield of("packing", f"{number} particles", Bed(number=number), full(number), Expected())
