@@ -141,7 +141,7 @@ def watched(work: Callable[[], Made], word: str, kept: Path) -> tuple[Made, floa
         done.set()
         watcher.join()
     if peak[0] > 0:
-        kept.write_text(f"{peak[0]:.1f}")
+        kept.write_text(repr(peak[0]))
     return made, peak[0] if peak[0] > 0 else float("nan")
 
 
