@@ -11,14 +11,11 @@ from bedchain.frames import DataError
 
 # Up to this many states a dense eigenvalue solver is faster, and sure to find all.
 DENSE_STATES = 400
-# Up to this many states the long-run density is solved for directly; the fill-in of more takes gigabytes.
+# Up to this many states linear systems are solved directly; the fill-in of more takes minutes and gigabytes.
 DIRECT_STATES = 10_000
 # What one step may change of a long-run density found by iteration.
 STATIONARY_TOLERANCE = 1e-9
-
-# states of a system that is solved by elimination: 80 000 of a dynamic chain fill gigabytes
-MOST_ELIMINATED = 10_000
-# of an iteration, relative to the right side
+# Of a linear system solved by iteration, relative to its right side.
 ITERATION_ERROR = 1e-10
 
 
@@ -157,7 +154,7 @@ def first_passage_steps(matrix: sparse.csr_array, target: NDArray[np.bool_]) -> 
 
 def _solved(system: sparse.csc_array, right: NDArray[np.float64]) -> NDArray[np.float64]:
     """Solution of a linear system: by elimination, or by iteration where its fill would take minutes."""
-    if right.size > MOST_ELIMINATED:
+    if right.size > DIRECT_STATES:
         found, failed = linalg.bicgstab(system, right, rtol=ITERATION_ERROR, maxiter=right.size)
         if not failed:
             return np.asarray(found)

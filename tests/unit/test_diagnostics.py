@@ -123,6 +123,13 @@ def test_first_passage_agrees_with_deeptime_and_by_hand():
     assert up[0] == pytest.approx(4 * 5 * 2)
 
 
+def test_first_passage_by_iteration_agrees_with_elimination(monkeypatch):
+    matrix, target = random_matrix(5), np.arange(25) == 3
+    direct = diagnostics.first_passage_steps(matrix, target)
+    monkeypatch.setattr(diagnostics, "DIRECT_STATES", 1)
+    assert diagnostics.first_passage_steps(matrix, target) == pytest.approx(direct, rel=1e-7)
+
+
 def test_first_passage_is_infinite_where_the_target_may_be_missed():
     matrix = sparse.csr_array(np.array([[0.5, 0.25, 0.25, 0], [0, 1, 0, 0], [0, 0, 0, 1], [0, 0, 1, 0]]))
     assert diagnostics.first_passage_steps(matrix, np.arange(4) == 1).tolist() == [np.inf, 0, np.inf, np.inf]
