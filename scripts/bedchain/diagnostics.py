@@ -15,8 +15,8 @@ DENSE_STATES = 400
 DIRECT_STATES = 10_000
 # What one step may change of a long-run density found by iteration.
 STATIONARY_TOLERANCE = 1e-9
-# A linear system solved by iteration: error relative to its right side, iterations at most (22 for the dynamic
-# chain of 81 000 particles), and what its incomplete factors leave out and may fill.
+# A linear system solved by iteration: error relative to its right side, iterations at most (the dynamic chain
+# of 81 000 particles takes 22), and what its incomplete factors leave out and may fill.
 ITERATION_ERROR, ITERATIONS = 1e-10, 1000
 DROPPED, FILL = 1e-3, 5
 
