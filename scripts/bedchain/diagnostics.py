@@ -64,16 +64,14 @@ def _stationary(matrix: sparse.csr_array) -> NDArray[np.float64]:
     n = matrix.shape[0]
     if n == 1:
         return np.ones(1)
-    if n <= DIRECT_STATES:
-        # One state is set to 1, the rest solved for.
-        balance = sparse.csc_array((sparse.eye_array(n) - matrix).T)
-        density = np.ones(n)
-        density[1:] = linalg.spsolve(sparse.csc_array(balance[1:, 1:]), -balance[1:, [0]].toarray().ravel())
-    else:
-        # Half a step each time: a chain with a period has other eigenvalues on the unit circle.
-        lazy = sparse.csr_array(((sparse.eye_array(n) + matrix) / 2).T)
-        _, vectors = linalg.eigs(lazy, k=1, which="LR", v0=np.full(n, 1.0 / n), ncv=40, maxiter=20_000)
-        density = np.real(vectors[:, 0])
+    # The most entered state is set to 1, the rest solved for.
+    first = int(np.argmax(matrix.sum(axis=0)))
+    rest = np.flatnonzero(np.arange(n) != first)
+    balance = sparse.csc_array((sparse.eye_array(n) - matrix).T)
+    density = np.ones(n)
+    density[rest] = _solved(
+        sparse.csc_array(balance[rest][:, rest]), -balance[rest][:, [first]].toarray().ravel()
+    )
     density = np.abs(density) / np.abs(density).sum()
     change = float(np.abs(density @ matrix - density).sum())
     if change > STATIONARY_TOLERANCE:
@@ -91,7 +89,7 @@ def _absorbed(
     mass = np.where(recurrent, start, 0.0)
     if transient.size and start[transient].sum() > 0:
         inside = sparse.eye_array(transient.size) - matrix[transient][:, transient]
-        visits = np.atleast_1d(linalg.spsolve(sparse.csc_array(inside.T), start[transient]))
+        visits = _solved(sparse.csc_array(inside.T), start[transient])
         mass += np.where(recurrent, visits @ matrix[transient], 0.0)
     return mass
 
@@ -162,7 +160,7 @@ def _solved(system: sparse.csc_array, right: NDArray[np.float64]) -> NDArray[np.
         found, failed = linalg.bicgstab(system, right, rtol=ITERATION_ERROR, maxiter=ITERATIONS, M=guide)
         if not failed:
             return np.asarray(found)
-    return np.asarray(linalg.spsolve(system, right))
+    return np.atleast_1d(linalg.spsolve(system, right))
 
 
 def _leads_to(
