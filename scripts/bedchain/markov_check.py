@@ -17,11 +17,14 @@ from bedchain.grid import Grid
 from bedchain.markov_chain import MarkovChain
 from bedchain.mixing import GROUPS
 from bedchain.propagation import Sides, Starts, count_starts, counted, propagated
+from bedchain.stage import LOG
 
 # processes whose timescales are given, slowest first; a pair of complex eigenvalues counts twice
 TIMESCALES = 5
 # chains learned again for a band, unless learning and solving one takes too long: above these entries
 REPLICATES, MOST_ENTRIES = 40, 100_000
+# no longer lags for a chain of more states: most pairs are seen once then, and a lag takes a minute
+MOST_STATES = 150_000
 # windows hold at least this many steps of the longest lag
 FEWEST_STEPS = 5
 
@@ -95,9 +98,12 @@ def check_model(
     rows = []
     for lag in lags:
         relearn = models.relearner(name, frames, grid, lag, estimator, **(options or {}))
-        found, replicates = with_replicates(relearn, frames, sides, lag, block, rng)
+        found, replicates, n_states = with_replicates(relearn, frames, sides, lag, block, rng)
         times = sides.gaps[sides.gaps % lag == 0] * frames.interval_s
         rows += finding_rows(name, lag * frames.interval_s, times, found, replicates)
+        if n_states > MOST_STATES:
+            LOG.info("%s chain: %d states at %g s, no longer lags", name, n_states, lag * frames.interval_s)
+            break
     return rows
 
 
@@ -108,15 +114,16 @@ def with_replicates(
     lag: int,
     block: int,
     rng: np.random.Generator,
-) -> tuple[Findings, Findings | None]:
-    """Findings of a chain, and those of chains learned again where that is affordable."""
+) -> tuple[Findings, Findings | None, int]:
+    """Findings of a chain, of chains learned again where that is affordable, and its number of states."""
     n_steps = len(frames.times_s) - lag
     one = np.ones(n_steps, np.int64)
     chain = markovian(relearn(one))
     starts = count_starts(frames, chain, sides)
     found = findings(chain, starts, sides, one)
+    n_states = chain.matrix.shape[0]
     if chain.matrix.nnz > MOST_ENTRIES:
-        return found, None
+        return found, None, n_states
     size = found.timescales_s.size
     samples = block_chains(
         lambda weights: findings(markovian(relearn(weights)), starts, sides, weights),
@@ -127,7 +134,7 @@ def with_replicates(
         rng,
     )
     curves = samples[:, size:].reshape(len(samples), 2, *found.remaining.shape)
-    return found, Findings(samples[:, :size], curves[:, 0], curves[:, 1])
+    return found, Findings(samples[:, :size], curves[:, 0], curves[:, 1]), n_states
 
 
 def markovian(chain: models.Chain) -> MarkovChain:
