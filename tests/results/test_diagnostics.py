@@ -16,6 +16,10 @@ ROUND_OFF = 1e-9
 DIGITS = 1e-6
 # a chain that follows the bed at its own lag; more than that and the curves no longer look alike
 LARGEST_ERROR = 0.2
+# of a step, where a line between two groups cuts cells: their particles are spread over both sides
+CUT_CELLS = 0.01
+# of Lacey's index at the start, likewise: the middle column of the paper's cells holds both groups
+CUT_START = 0.03
 # the maximum-likelihood estimate keeps the mean density, up to the first and the last frame
 END_FRAMES = 0.05
 
@@ -74,7 +78,8 @@ def test_one_step_of_a_pooled_static_chain_is_what_was_counted(table, case):
     seen = part_of(table, "remaining_counted").set_index(["part", "time_s"])["value"]
     steps = part_of(table, "remaining_propagated", "static")
     for row in steps[np.isclose(steps["lag_s"], steps["time_s"])].itertuples():
-        assert row.value == pytest.approx(seen[row.part, row.time_s], abs=DIGITS)
+        cut = row.part in ("left", "right") and case["cells"]["columns"] % 2
+        assert row.value == pytest.approx(seen[row.part, row.time_s], abs=CUT_CELLS if cut else DIGITS)
 
 
 def test_chapman_kolmogorov_errors_are_small_and_in_their_bands(table, models, case):
@@ -119,7 +124,7 @@ def test_lacey_index_goes_from_apart_to_mixed(table, case):
         for direction in ("radial", "axial"):
             rows = part_of(table, "lacey_index", source)
             curve = rows[rows["part"] == direction].sort_values("time_s")["value"]
-            assert curve.iloc[0] == pytest.approx(0, abs=0.01)
+            assert curve.iloc[0] == pytest.approx(0, abs=CUT_START)
             assert curve.iloc[-1] > 0.5 and curve.max() < 1.05
 
 
