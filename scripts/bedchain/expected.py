@@ -26,9 +26,13 @@ def read_expected(file: Path) -> pd.DataFrame:
     Raises
     ------
     UserError
-        Where a column is missing, a row is there twice, or a tolerance is not positive.
+        Where a line has too many fields, a column is missing, a row is there twice, or a tolerance is not
+        positive.
     """
-    table = pd.read_csv(file, comment="#", skipinitialspace=True, dtype={"unit": str})
+    try:
+        table = pd.read_csv(file, comment="#", skipinitialspace=True, dtype={"unit": str})
+    except pd.errors.ParserError as error:
+        raise UserError(f"{file}: {str(error).strip()}; put a text with a comma into quotes") from None
     if missing := [name for name in COLUMNS if name not in table]:
         raise UserError(f"{file} lacks the columns {', '.join(missing)}; add them")
     if table.duplicated(["quantity", "source"]).any():

@@ -59,3 +59,8 @@ def test_a_missing_column_is_refused(tmp_path):
     file.write_text("quantity,source,value\n", encoding="utf-8")
     with pytest.raises(UserError, match="lacks the columns tolerance, unit"):
         read_expected(file)
+
+
+def test_a_comma_too_many_is_told_with_its_line(tmp_path):
+    with pytest.raises(UserError, match="line 3.*put a text with a comma into quotes"):
+        expected(tmp_path, "height,dem,0.11,0.011,m\nheight,static,0.12,0.001,m,one, two\n")
