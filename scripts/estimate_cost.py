@@ -87,7 +87,7 @@ if "snakemake" in globals():
     with stage(snakemake.log[0]):
         estimate_cost(
             snakemake.params.case,
-            Path(snakemake.params.bed),
+            Path("results") / snakemake.params.bed,
             {name: Path(folder) for name, folder in snakemake.params.benchmarks.items()},
             [Path(file) for file in snakemake.params.records if Path(file).name == "dem.json"],
             snakemake.params.archived,

@@ -249,7 +249,7 @@ rule estimate_cost:
         "../envs/python.yaml"
     params:
         case=CASE,
-        bed=BED,
+        bed=NAME,
         benchmarks={"bed": f"benchmarks/{NAME}", "made": BENCHMARKS},
         archived=REFERENCE is not None,
         presets="cases/presets.yaml",
