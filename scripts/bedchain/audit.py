@@ -12,7 +12,7 @@ from dataclasses import dataclass
 import pandas as pd
 
 from bedchain import scene_numbers as numbers
-from bedchain.parameters import GRAVITY_M_S2
+from bedchain.case_numbers import GRAVITY_M_S2
 from bedchain.scene_numbers import Scene
 
 CROWE = "Crowe, Schwarzkopf, Sommerfeld, Tsuji 2012, Multiphase Flows with Droplets and Particles"

@@ -5,8 +5,7 @@ import math
 from dataclasses import dataclass
 
 from bedchain.case import Case, Schema, case_value, schema_keys
-from bedchain.case_numbers import GRAVITY_M_S2 as GRAVITY_M_S2
-from bedchain.case_numbers import START_SPACING_DIAMETERS, ratio
+from bedchain.case_numbers import GRAVITY_M_S2, START_SPACING_DIAMETERS, ratio
 
 SKIN_DIAMETERS = (
     0.7  # neighbour skin: a list lasts until a particle has moved half of it; speed only, no physics

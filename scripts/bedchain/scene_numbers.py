@@ -7,9 +7,8 @@ from dataclasses import dataclass
 from scipy.optimize import brentq
 
 from bedchain.case import Case
-from bedchain.case_numbers import PACKED_AREA_SHARE, PACKED_VOLUME_SHARE, settled_height
+from bedchain.case_numbers import GRAVITY_M_S2, PACKED_AREA_SHARE, PACKED_VOLUME_SHARE, settled_height
 from bedchain.errors import UserError
-from bedchain.parameters import GRAVITY_M_S2
 
 PRESSURE_PA = 101325.0  # of the gas, no key of the case: standard atmosphere
 ADIABATIC_INDEX = 1.4  # of air and other gases of two atoms

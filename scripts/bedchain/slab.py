@@ -4,8 +4,7 @@
 import math
 
 from bedchain.case import Case
-from bedchain.case_numbers import LAYER_DISTANCE, PACKED_AREA_SHARE, PACKED_VOLUME_SHARE
-from bedchain.parameters import GRAVITY_M_S2
+from bedchain.case_numbers import GRAVITY_M_S2, LAYER_DISTANCE, PACKED_AREA_SHARE, PACKED_VOLUME_SHARE
 
 
 def slab_voidage(area_share: float, thickness_diameters: float) -> float:

@@ -11,8 +11,9 @@ import pandas as pd
 import yaml
 
 from bedchain.case import Case
+from bedchain.case_numbers import GRAVITY_M_S2
 from bedchain.errors import CaseError, UserError
-from bedchain.parameters import GRAVITY_M_S2, weight_per_area
+from bedchain.parameters import weight_per_area
 from bedchain.stability.beds import Bed, case_of, changes
 from bedchain.stability.verdict import Verdict, judge, refused, stopped
 from bedchain.variants import Variant, simulate

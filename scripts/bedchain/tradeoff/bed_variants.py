@@ -7,7 +7,7 @@ from dataclasses import dataclass
 from fractions import Fraction
 from typing import Any
 
-from bedchain.case import Case
+from bedchain.case import Case, case_value
 from bedchain.case_numbers import is_prime
 from bedchain.errors import UserError, report_user_errors
 from bedchain.variants import Variant
@@ -66,7 +66,7 @@ def bed_variants(case: Case) -> dict[str, BedVariant]:
     gas = case["gas"]["model"] != "none"
     found = {"base": BedVariant("realisation", Variant("base"))}
     for axis, name, changes in [*_particles(case), *(_gas(case) if gas else ())]:
-        if any(_value(case, key) != value for key, value in changes.items()):
+        if any(case_value(case, key) != value for key, value in changes.items()):
             found[name] = BedVariant(axis, Variant(name, changes))
     return dict(sorted(found.items(), key=lambda pair: _step(pair[1], case)))
 
@@ -194,11 +194,6 @@ def _coupling(case: Case) -> float:
     """What the particles' step must divide [s]: the gas's step, or, without gas, the frame interval."""
     time, gas = case["time"], case["gas"]["model"] != "none"
     return float(time["gas_step_s"] if gas else time["frame_interval_s"])
-
-
-def _value(case: Case, key: str) -> Any:
-    section, _, name = key.partition(".")
-    return case[section][name] if name else case[section]
 
 
 def _step(one: BedVariant, case: Case) -> float:
