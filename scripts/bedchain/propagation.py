@@ -17,6 +17,9 @@ from bedchain import chains, mixing
 from bedchain.frames import DataError, Frames
 from bedchain.markov_chain import MarkovChain
 
+# up to so many keys a list of all that there might be is faster than sorting those that there are
+LISTED_KEYS = 50_000_000
+
 
 @dataclass(frozen=True)
 class Sides:
@@ -68,9 +71,10 @@ def count_sides(frames: Frames, split_x_m: float, split_z_m: float, gaps: Sequen
         raise DataError(f"{n_frames} frames hold no two that are {max(gaps)} apart: widen the window")
     places = zip(frames.x_m, frames.z_m, strict=True)
     marked = np.array([mixing.sides(np.asarray(x), np.asarray(z), split_x_m, split_z_m) for x, z in places])
-    still = np.zeros((len(gaps), n_frames, 4), np.int64)
+    still, bits = np.zeros((len(gaps), n_frames, 4), np.int64), np.packbits(marked, axis=2)
     for row, gap in enumerate(gaps):
-        still[row, : n_frames - gap] = (marked[: n_frames - gap] & marked[gap:]).sum(axis=2)
+        both = bits[: n_frames - gap] & bits[gap:]
+        still[row, : n_frames - gap] = np.bitwise_count(both).sum(axis=2, dtype=np.int64)
     return Sides(split_x_m, split_z_m, marked, np.asarray(gaps, np.int64), still)
 
 
@@ -136,15 +140,50 @@ def count_starts(frames: Frames, chain: MarkovChain, sides: Sides) -> Starts:
     keys = np.zeros((n_starts - before, shown.shape[1]), np.int64)
     for ago in range(span, -1, -lag):
         keys = keys * base + shown[span - ago : n_starts - chain.back - ago]
-    pasts, which = np.unique(keys, return_inverse=True)
-    place = (np.repeat(np.arange(before, n_starts), keys.shape[1]), which.ravel())
-    number = []
-    for group in range(sides.marked.shape[1]):
-        there = sides.marked[before:n_starts, group].ravel()
-        once = (np.ones(there.sum(), np.int64), (place[0][there], place[1][there]))
-        number.append(sparse.csr_array(sparse.coo_array(once, shape=(n_starts, pasts.size))))
+    pasts, which = ranked(keys, base**history)
+    groups = np.moveaxis(sides.marked[before:n_starts], 1, 0)
+    number = tuple(_by_frame(which, group, before, pasts.size) for group in groups)
     symbols = np.array([pasts // base**ago % base for ago in range(history)][::-1], np.int32)
-    return Starts(symbols, tuple(number))
+    return Starts(symbols, number)
+
+
+def ranked(keys: NDArray[np.int64], n_keys: int) -> tuple[NDArray[np.int64], NDArray[np.integer]]:
+    """Different keys, rising, and the place of each of the given ones among them.
+
+    Parameters
+    ----------
+    keys : (...) int64 array
+        From 0 to ``n_keys - 1``.
+    n_keys : int
+        Up to `LISTED_KEYS` they are looked up in a list of all that there might be, above that sorted.
+
+    Returns
+    -------
+    found : (n_found,) int64 array
+    which : (...) int array
+    """
+    if n_keys > LISTED_KEYS:
+        found, which = np.unique(keys, return_inverse=True)
+        return found, which.reshape(keys.shape)
+    seen = np.zeros(n_keys, bool)
+    seen[keys] = True
+    place = np.cumsum(seen, dtype=np.int32) - 1
+    return np.flatnonzero(seen), place[keys]
+
+
+def _by_frame(
+    which: NDArray[np.integer], group: NDArray[np.bool_], before: int, n_pasts: int
+) -> sparse.csr_array:
+    """Particles of a group with each past in each frame, after as many empty frames as come before."""
+    places, numbers = [np.zeros(0, np.int64)], [np.zeros(0, np.int64)]
+    for now, marked in zip(which, group, strict=True):
+        held = np.bincount(now[marked], minlength=n_pasts)
+        places.append(np.flatnonzero(held))
+        numbers.append(held[places[-1]])
+    ends = np.cumsum([0] * before + [place.size for place in places])
+    return sparse.csr_array(
+        (np.concatenate(numbers), np.concatenate(places), ends), shape=(before + len(which), n_pasts)
+    )
 
 
 def propagated(

@@ -60,37 +60,39 @@ def read_manifest(path: Path) -> dict[str, Any]:
 
 
 def write_trajectory(
-    manifest: dict[str, Any], folder: Path, target: Path, bounds: dict[str, float], progress: bool = True
-) -> np.ndarray:
-    """Read every frame, check it, and write all of them as one array, one frame in memory at a time.
+    dem: Path, trajectory: Path, metadata: Path, width_m: float, height_m: float, progress: bool = True
+) -> dict[str, Any]:
+    """Check every frame of a run and write them as one array, one frame in memory at a time.
 
     Parameters
     ----------
-    manifest : dict
-        As returned by :func:`read_manifest`.
-    folder : Path
-        Folder that the frames' files are relative to.
-    target : Path
-        File to make: float32 (n_frames, 4, n_particles), rows x, z [m], vx, vz [m/s], particles by id; NaN
-        for velocities that the dumps lack.
-    bounds : dict of str to float
-        Width and height of the bed, ``{"x": 0.27, "z": 1.05}`` [m].
+    dem : Path
+        The run's manifest, ``dem.json``, in the folder that the frames' files are relative to.
+    trajectory : Path
+        Gets float32 (n_frames, 4, n_particles): x, z [m], vx, vz [m/s], particles by id; NaN for velocities
+        that the dumps lack.
+    metadata : Path
+        Gets `trajectory_metadata`.
+    width_m, height_m : float
+        Size of the bed [m].
     progress : bool
         Show a bar with the time left on stderr.
 
     Returns
     -------
-    (n_particles,) ndarray of int64
-        The ids, ascending, the same in every frame.
+    dict
+        The manifest.
 
     Raises
     ------
     UserError
-        A frame is bad, or the dumps hold no positions.
+        A frame is missing, cut off, or holds other particles than the first, or the dumps hold no positions;
+        nothing is written then.
     """
+    manifest = read_manifest(dem)
     frames, number = manifest["frames"], int(manifest["number"])
-    shape = (len(frames), len(STORED), number)
-    _check_disk(target, 4 * int(np.prod(shape)))
+    shape, bounds = (len(frames), len(STORED), number), {"x": width_m, "z": height_m}
+    _check_disk(trajectory, 4 * int(np.prod(shape)))
     ids: np.ndarray | None = None
     columns = manifest["columns"]
     if absent := [name for name in STORED if name not in columns]:
@@ -98,16 +100,18 @@ def write_trajectory(
             raise UserError(f"the dumps hold {' '.join(columns)}, x and z are needed; write them again")
         LOG.info("no %s in the dumps: models that need velocities take differences of positions", absent)
     # a plain stream: the pages of a memory map would stay in memory until the end
-    with complete(target) as temporary, temporary.open("wb") as stream:
+    with complete(trajectory) as temporary, temporary.open("wb") as stream:
         write_npy_header(stream, shape, np.dtype(np.float32))
         for index in tqdm(range(len(frames)), desc="parse_dumps", unit="frame", disable=not progress):
-            frame = _read_frame(manifest, index, folder, ids, bounds)
+            frame = _read_frame(manifest, index, dem.parent, ids, bounds)
             ids = frame[columns.index("id")].astype(np.int64) if ids is None else ids
             nothing = np.full(frame.shape[1], np.nan)
             stored = [frame[columns.index(name)] if name in columns else nothing for name in STORED]
             stream.write(np.array(stored, np.float32).tobytes())
     assert ids is not None
-    return ids
+    with complete(metadata) as temporary:
+        temporary.write_text(json.dumps(trajectory_metadata(manifest, ids, width_m, height_m)))
+    return manifest
 
 
 def _read_frame(

@@ -7,7 +7,7 @@ from bedchain import chains, mixing, models
 from bedchain.consistency import chapman_kolmogorov
 from bedchain.frames import DataError, Frames
 from bedchain.grid import Grid
-from bedchain.propagation import count_sides, count_starts, counted, propagated
+from bedchain.propagation import LISTED_KEYS, count_sides, count_starts, counted, propagated, ranked
 
 ROUND_OFF = 1e-12
 SPLITS = (0.02, 0.01)
@@ -108,3 +108,11 @@ def test_a_markov_bed_is_followed_by_both_models():
 def test_a_gap_as_long_as_the_window_is_refused():
     with pytest.raises(DataError, match="10 frames hold no two that are 10 apart"):
         count_sides(walk_frames(5, 9), *SPLITS, [2, 10])
+
+
+@pytest.mark.parametrize("n_keys", [50, LISTED_KEYS + 1])
+def test_keys_are_ranked_alike_from_a_list_and_by_sorting(n_keys):
+    keys = np.array([[7, 49, 7], [0, 12, 49]])
+    found, which = ranked(keys, n_keys)
+    assert found.tolist() == [0, 7, 12, 49]
+    assert which.tolist() == [[1, 3, 1], [0, 2, 3]]

@@ -1,7 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Simulate variants of a bed, some side by side, and measure cost and errors of each."""
 
-import json
 import re
 import threading
 import time
@@ -14,11 +13,11 @@ from bedchain.case import Case
 from bedchain.comparison import read_series
 from bedchain.errors import UserError
 from bedchain.runs import Run, open_run
-from bedchain.stage import LOG, complete
+from bedchain.stage import LOG
 from bedchain.tradeoff.bed_variants import BedVariant
 from bedchain.tradeoff.observables import Reference, curve_errors, density_errors, scalar_errors
 from bedchain.tradeoff.reference import curves_seen, densities_seen, scalars_seen
-from bedchain.trajectory import read_manifest, trajectory_metadata, write_trajectory
+from bedchain.trajectory import read_manifest, write_trajectory
 from bedchain.variants import Variant, simulate
 
 Made = TypeVar("Made")
@@ -108,11 +107,9 @@ def seen(folder: Path, case: Case, reference: Reference) -> Row:
 
 def parsed(folder: Path, case: Case) -> Run:
     """The frames of a run, in one file."""
-    manifest, size = read_manifest(folder / "dem.json"), (case["bed"]["width_m"], case["bed"]["height_m"])
     trajectory, metadata = folder / "trajectory.npy", folder / "trajectory.json"
-    ids = write_trajectory(manifest, folder, trajectory, dict(zip("xz", size, strict=True)), False)
-    with complete(metadata) as temporary:
-        temporary.write_text(json.dumps(trajectory_metadata(manifest, ids, *size)))
+    size = case["bed"]["width_m"], case["bed"]["height_m"]
+    write_trajectory(folder / "dem.json", trajectory, metadata, *size, progress=False)
     return open_run(folder.name, trajectory, metadata)
 
 

@@ -7,12 +7,11 @@ from dataclasses import dataclass
 from fractions import Fraction
 from typing import Any
 
-from bedchain.case import Case, case_value
+from bedchain.case import Case, case_value, load_schema
 from bedchain.case_numbers import is_prime
 from bedchain.errors import UserError, report_user_errors
 from bedchain.variants import Variant
 
-DRAG_LAWS = ("gidaspow", "di_felice", "beetstra", "koch_hill", "wen_yu")
 # Young's modulus over the case's; the step goes with its root, so that its share of the Rayleigh time stays
 STIFFNESSES = (0.1, 0.4, 4.0, 10.0)
 STEPS = (0.5, 2.5)
@@ -165,7 +164,7 @@ def _gas(case: Case) -> Iterator[tuple[str, str, dict[str, Any]]]:
     for value in SMOOTHINGS:
         axis = "ablation" if value == 0 else "smoothing"
         yield axis, f"smoothing_{value:g}", {"gas.smoothing_diameters_1": value}
-    for law in DRAG_LAWS:
+    for law in load_schema()["properties"]["gas"]["properties"]["drag_law"]["enum"]:
         yield "drag law", f"drag_{law}", {"gas.drag_law": law}
     for value in THICKNESSES if case["bed"]["layers"] == "one" else ():
         thickness = value * case["particles"]["diameter_m"]
