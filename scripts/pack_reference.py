@@ -66,6 +66,7 @@ def pack_reference(case_file: Path, results: Path, target: Path, level_m: float 
     store, described = open_trajectory(results / "trajectory.npy", results / "trajectory.json")
     history_s = min(HISTORY_S, start_s)
     frames = window(np.array(described["times_s"]), start_s - history_s, end_s)
+    git = git_state()  # before files of the archive itself make the tree another one
     with whole_folder(target) as part:
         levels = (levels_of(store[at, :2], level_m) for at in range(frames.start, frames.stop))
         write_levels(levels, part / archive.POSITIONS)
@@ -90,7 +91,7 @@ def pack_reference(case_file: Path, results: Path, target: Path, level_m: float 
                 "particles": case["seed"],
                 "repeats": [kick_seed(case["seed"], number) for number in numbers],
             },
-            "git": git_state(),
+            "git": git,
             "packages": {"debian": debian_packages(), "python": python_packages()},
             "machine": machine(),
             "files": {
