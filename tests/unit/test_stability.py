@@ -174,7 +174,7 @@ def test_numbers_have_few_digits_and_their_multiples_are_exact():
 @pytest.mark.parametrize(
     ("bed", "key", "better"),
     [
-        (Bed(young=5e3, dem_step=5e-5), "contact.young_modulus_Pa", {"young": 2e4}),
+        (Bed(young=5e3, dem_step=5e-5), "contact.young_modulus_Pa", {"young": 2.5e4}),
         (Bed(density=11.9, velocity=0.1), "gas.density_kg_m3", {"density": 12.1}),
         (Bed(gas_step=1.2e-2), "time.gas_step_s", {"gas_step": 3e-3}),
         (Bed(cell=10), "gas.cell_size_m", {"cell": 5}),

@@ -7,8 +7,9 @@ from dataclasses import dataclass
 from bedchain.case_checks import COURANT_MAX, RAYLEIGH_SHARE_MAX
 from bedchain.case_numbers import DENSE_VOIDAGE, contact_modulus, rayleigh_time, static_overlap
 from bedchain.scene_checks import ADDED_MASS_MAX, FREE_FALL_SHARE_MAX
-from bedchain.scene_numbers import Scene, contact_duration, ergun_velocity, terminal_velocity
+from bedchain.scene_numbers import Scene, contact_duration, ergun_velocity, grain_velocity, terminal_velocity
 
+OVERLAP_TIMES = 3.0  # of the overlap under even loads: force chains carry some times as much
 LATTICE_STIFFNESS = 6.0  # m omega^2 / k of the stiffest wave in closest discs joined by springs k
 
 
@@ -48,6 +49,17 @@ def overlap_at_rest(scene: Scene, number: int) -> float:
     return static_overlap(
         scene.young, scene.poisson, scene.density, scene.diameter, number, scene.width, scene.thickness
     )
+
+
+def deepest_overlap(scene: Scene, number: int) -> float:
+    """Overlap over the diameter that no contact of a bed coming to rest should exceed [1].
+
+    The larger one of `OVERLAP_TIMES` that at rest, and that of a particle which still falls by a diameter,
+    ``(15 m* v^2 / (16 E* sqrt(R*)))^(2/5) / d`` (Hertz; Johnson 1985, Contact Mechanics, ch. 11).
+    """
+    mass, modulus = scene.density * scene.volume / 2, contact_modulus(scene.young, scene.poisson)
+    energy = 15 * mass * grain_velocity(scene) ** 2 / (16 * modulus * math.sqrt(scene.diameter / 4))
+    return max(OVERLAP_TIMES * overlap_at_rest(scene, number), energy**0.4 / scene.diameter)
 
 
 def oscillator_step(scene: Scene, number: int) -> float:
