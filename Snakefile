@@ -367,6 +367,7 @@ rule discuss_errors:
         f"{LOGS}/discuss_errors.log",
     benchmark:
         f"{BENCHMARKS}/discuss_errors.tsv"
+    priority: 1  # long: the short ones fit beside its end
     conda:
         "envs/python.yaml"
     params:
@@ -420,6 +421,7 @@ rule diagnose_chains:
         f"{LOGS}/diagnose_chains.log",
     benchmark:
         f"{BENCHMARKS}/diagnose_chains.tsv"
+    priority: 1  # long: the short ones fit beside its end
     conda:
         "envs/python.yaml"
     params:
