@@ -190,6 +190,17 @@ def test_settings_beyond_a_limit_are_refused_and_those_within_are_not(bed, key, 
     assert loaded(replace(bed, **better), tmp_path)
 
 
+def test_the_deepest_overlap_is_that_of_a_fall_of_one_diameter_where_particles_are_stiff():
+    stiff = scene(Bed(young=1e9))
+    overlap = theory.deepest_overlap(stiff, 64) * stiff.diameter
+    modulus = contact_modulus(stiff.young, stiff.poisson)
+    stored = 8 / 15 * modulus * math.sqrt(stiff.diameter / 4) * overlap**2.5
+    mass = stiff.density * math.pi / 6 * stiff.diameter**3
+    assert stored == pytest.approx(mass / 2 * 9.81 * stiff.diameter / 2, rel=1e-3)
+    soft = scene(Bed(young=1e4))
+    assert theory.deepest_overlap(soft, 64) == pytest.approx(3 * theory.overlap_at_rest(soft, 64))
+
+
 def test_the_limits_of_the_checks_are_those_of_the_theory():
     bed = Bed(young=5e3)
     assert theory.overlap_at_rest(scene(bed), bed.number) > OVERLAP_AT_REST_MAX
