@@ -7,7 +7,13 @@ from dataclasses import dataclass
 from scipy.optimize import brentq
 
 from bedchain.case import Case
-from bedchain.case_numbers import GRAVITY_M_S2, PACKED_AREA_SHARE, PACKED_VOLUME_SHARE, settled_height
+from bedchain.case_numbers import (
+    GRAVITY_M_S2,
+    PACKED_AREA_SHARE,
+    PACKED_VOLUME_SHARE,
+    contact_modulus,
+    settled_height,
+)
 from bedchain.errors import UserError
 
 PRESSURE_PA = 101325.0  # of the gas, no key of the case: standard atmosphere
@@ -181,7 +187,7 @@ def collision_time(scene: Scene) -> float:
 
 def contact_duration(scene: Scene) -> float:
     """Duration of an elastic collision of two particles at `grain_velocity` [s] (Hertz; Johnson 1985)."""
-    modulus = scene.young / (2 * (1 - scene.poisson**2))
+    modulus = contact_modulus(scene.young, scene.poisson)
     mass, radius = scene.density * scene.volume / 2, scene.diameter / 4
     return HERTZ_DURATION * (mass**2 / (radius * modulus**2 * grain_velocity(scene))) ** 0.2
 

@@ -18,8 +18,10 @@ DIGITS = 1e-6
 LARGEST_ERROR = 0.2
 # of a step, where a line between two groups cuts cells: their particles are spread over both sides
 CUT_CELLS = 0.01
-# of Lacey's index at the start, likewise: the middle column of the paper's cells holds both groups
-CUT_START = 0.03
+# of Lacey's index at the start: where the line cuts no cell, and where the middle column holds both groups
+START, CUT_START = 0.01, 0.03
+# chains of a bed of so few particles are learned again at every lag, of a larger one only at the shortest
+FEW_PARTICLES = 10_000
 # the maximum-likelihood estimate keeps the mean density, up to the first and the last frame
 END_FRAMES = 0.05
 
@@ -42,6 +44,11 @@ def part_of(table, quantity, source=None):
     return rows if source is None else rows[rows["source"] == source]
 
 
+def middle_is_cut(case):
+    """Whether the line between left and right goes through a column of cells."""
+    return case["cells"]["columns"] % 2 == 1
+
+
 def test_columns_units_and_values(table):
     assert list(table.columns) == COLUMNS
     assert np.isfinite(table["value"]).all()
@@ -59,8 +66,9 @@ def test_timescales_are_positive_and_fall(table, models, case):
             in_order = scales.assign(part=scales["part"].astype(int)).sort_values("part")["value"]
             assert (in_order > 0).all() and (in_order.diff().dropna() <= DIGITS * in_order.max()).all()
     static = part_of(table, "implied_timescale", "static")
-    own = np.isclose(static["lag_s"], case["chain"]["lag_s"])
-    assert static.loc[own, "ci_low"].notna().all()
+    few = case["particles"]["number"] <= FEW_PARTICLES
+    banded = static[few | np.isclose(static["lag_s"], case["chain"]["lag_s"])]
+    assert len(banded) and banded["ci_low"].notna().all()
 
 
 def test_mixing_time_belongs_to_the_slowest_process(table, models, case):
@@ -78,7 +86,7 @@ def test_one_step_of_a_pooled_static_chain_is_what_was_counted(table, case):
     seen = part_of(table, "remaining_counted").set_index(["part", "time_s"])["value"]
     steps = part_of(table, "remaining_propagated", "static")
     for row in steps[np.isclose(steps["lag_s"], steps["time_s"])].itertuples():
-        cut = row.part in ("left", "right") and case["cells"]["columns"] % 2
+        cut = row.part in ("left", "right") and middle_is_cut(case)
         assert row.value == pytest.approx(seen[row.part, row.time_s], abs=CUT_CELLS if cut else DIGITS)
 
 
@@ -124,7 +132,8 @@ def test_lacey_index_goes_from_apart_to_mixed(table, case):
         for direction in ("radial", "axial"):
             rows = part_of(table, "lacey_index", source)
             curve = rows[rows["part"] == direction].sort_values("time_s")["value"]
-            assert curve.iloc[0] == pytest.approx(0, abs=CUT_START)
+            cut = direction == "radial" and middle_is_cut(case)
+            assert curve.iloc[0] == pytest.approx(0, abs=CUT_START if cut else START)
             assert curve.iloc[-1] > 0.5 and curve.max() < 1.05
 
 

@@ -5,7 +5,13 @@ import math
 from dataclasses import dataclass
 
 from bedchain.case_checks import COURANT_MAX, RAYLEIGH_SHARE_MAX
-from bedchain.case_numbers import DENSE_VOIDAGE, contact_modulus, rayleigh_time, static_overlap
+from bedchain.case_numbers import (
+    DENSE_VOIDAGE,
+    GRAVITY_M_S2,
+    contact_modulus,
+    rayleigh_time,
+    static_overlap,
+)
 from bedchain.scene_checks import ADDED_MASS_MAX, FREE_FALL_SHARE_MAX
 from bedchain.scene_numbers import Scene, contact_duration, ergun_velocity, grain_velocity, terminal_velocity
 
@@ -101,7 +107,7 @@ def courant_limit(scene: Scene, step: float) -> Limit:
 
 def free_fall_limit(scene: Scene, step: float) -> Limit:
     """Share of the time in which a particle falls through one gas cell."""
-    value = FREE_FALL_SHARE_MAX * math.sqrt(2 * scene.cell / 9.81)
+    value = FREE_FALL_SHARE_MAX * math.sqrt(2 * scene.cell / GRAVITY_M_S2)
     return Limit("gas step [s]", value, f"{FREE_FALL_SHARE_MAX:g} sqrt(2 cell / g)", step)
 
 
