@@ -251,7 +251,7 @@ def contact_criteria(scene: Scene) -> Iterator[Criterion]:
         "rolling resistance", "contact over particle radius", "a_Hertz / R under the settled bed, of glass",
         contact_radius(scene) / (scene.diameter / 2), 0.05,
         "our choice; no arm is longer than a (Johnson 1985, Contact Mechanics, ch. 9); larger ones "
-        "shape heaps: Zhou, Xu, Yu, Zulli 2001, Phys. Rev. E 64, 021301", False,
+        "shape heaps: Zhou, Xu, Yu, Zulli 2001, Phys. Rev. E 64, 021301", scene.rolling > 0,
     )  # fmt: skip
 
 

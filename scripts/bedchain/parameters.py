@@ -68,6 +68,10 @@ def derived_parameters(case: Case) -> list[Parameter]:
     cells_y = max(1, round(thickness / cell)) if many else 1
     return [
         Parameter("gravity", GRAVITY_M_S2, "m/s2", "constant, along -z"),
+        Parameter("rolling_law", rolling_law(case), "name", "from contact.rolling_friction_1"),
+        Parameter(
+            "hooke_velocity", math.sqrt(GRAVITY_M_S2 * bed["width_m"]), "m/s", "sqrt(gravity bed.width_m)"
+        ),
         Parameter("radius", diameter / 2, "m", "particles.diameter_m / 2"),
         Parameter("slab_low", -thickness / 2, "m", "-bed.thickness_m / 2"),
         Parameter("slab_high", thickness / 2, "m", "bed.thickness_m / 2"),
@@ -87,6 +91,11 @@ def derived_parameters(case: Case) -> list[Parameter]:
         Parameter("dump_suffix", DUMP_SUFFIX[case["run"]["dump_format"]], "name", "run.dump_format"),
         *drum_parameters(case),
     ]
+
+
+def rolling_law(case: Case) -> str:
+    """LIGGGHTS's word for the rolling resistance: an elastic-plastic spring (Ai et al. 2011), or none."""
+    return "epsd2" if case["contact"]["rolling_friction_1"] > 0 else "off"
 
 
 def drum_parameters(case: Case) -> list[Parameter]:

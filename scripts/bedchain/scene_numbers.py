@@ -37,8 +37,8 @@ class Scene:
         Of the bed, of the slab, of the settled particles, and the largest height to fall through [m].
     voidage : float
         Of the settled bed [1], by the slab's convention.
-    young, poisson, friction : float
-        Of the contacts as they are run [Pa], [1], [1].
+    young, poisson, friction, rolling : float
+        Of the contacts as they are run [Pa], [1]; the frictions are of sliding and of rolling.
     cell : float
         Edge of a gas cell [m].
     gas : bool
@@ -60,6 +60,7 @@ class Scene:
     young: float
     poisson: float
     friction: float
+    rolling: float
     cell: float
     gas: bool
     layered: bool
@@ -103,6 +104,7 @@ def scene_of(case: Case) -> Scene:
         gas["superficial_velocity_m_s"] if solved else 0.0,
         width, thickness, depth, bed["height_m"] if "drum" in case else depth, voidage,
         contact["young_modulus_Pa"], contact["poisson_ratio_1"], contact["friction_1"],
+        contact["rolling_friction_1"],
         gas["cell_size_m"], solved, layered,
     )  # fmt: skip
 
