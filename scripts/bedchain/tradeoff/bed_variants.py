@@ -17,7 +17,7 @@ STIFFNESSES = (0.1, 0.4, 4.0, 10.0)
 STEPS = (0.5, 2.5)
 GAS_STEPS = (0.2, 0.5, 2.0)
 GAS_CELLS = (0.5, 2.0, 4.0)
-SMOOTHINGS = (6.0,)  # none at all tells only on cells that are fine enough, as in the pair
+SMOOTHINGS = (10.0,)  # in diameters; what is shorter than 1.4 gas cells changes nothing, the kernel is as wide
 # in diameters; the first by the conversion of Hoomans et al. 1996
 THICKNESSES = (0.859, 1.2)
 FRICTIONS = (0.0, 0.3)
@@ -180,7 +180,8 @@ def _gas(case: Case) -> Iterator[tuple[str, str, dict[str, Any]]]:
         yield "slab thickness", f"thickness_{value:g}", {"bed.thickness_m": thickness}
     yield "ablation", "ramp_none", {"time.ramp_s": time["gas_step_s"]}
     fine = {"gas.cell_size_m": dividing_cell(case, 0.5)}
-    yield "pair", "gas_cell_0.5_smoothing_0", fine | {"gas.smoothing_diameters_1": 0.0}
+    same_kernel = math.sqrt(2) * case["gas"]["cell_size_m"] / case["particles"]["diameter_m"]
+    yield "pair", "gas_cell_0.5_same_kernel", fine | {"gas.smoothing_diameters_1": same_kernel}
     shorter = _with_gas_step(case, dividing_step(time["frame_interval_s"], time["gas_step_s"] * 0.5))
     yield "pair", "gas_cell_0.5_gas_step_0.5", fine | shorter
 
