@@ -2,6 +2,7 @@
 """Contacts alone: two spheres that collide head on, and one that slides on the bottom until it rolls."""
 
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 
@@ -20,15 +21,21 @@ WIDTH, HEIGHT = 0.02, 0.02  # [m]
 STEP = 2e-6  # [s], 3 % of the Rayleigh time: an impact takes about a hundred steps
 SLIDE_SPEED = 0.1  # [m/s]
 SLIDE = 0.02  # [s], twice the time of sliding
+MODULUS = YOUNG / (2 * (1 - POISSON**2))  # of two spheres that touch [Pa]
+LAWS = ("hertz", "hooke")
+SQUEEZE = 4e-4  # [s]: until two spheres have met and parted
+FINE_FRAME = 4e-6  # [s], a fiftieth of an impact
+ROLLING_FRICTION = 0.1
+LATE = 0.7  # share of that time after which the sphere rolls under either friction
 
 
-def case_sections(frame_s: float, **contact: float) -> dict[str, dict[str, float]]:
+def case_sections(frame_s: float, **contact: float | str) -> dict[str, dict[str, Any]]:
     """Sections of the case file that both checks share."""
     return {
         "bed": {"width_m": WIDTH, "height_m": HEIGHT},
         "particles": {"density_kg_m3": DENSITY, "diameter_m": SPHERE},
         "contact": {"young_modulus_Pa": YOUNG, "poisson_ratio_1": POISSON, "friction_1": FRICTION} | contact,
-        "time": {"dem_step_s": STEP, "gas_step_s": 2e-5, "frame_interval_s": frame_s},
+        "time": {"dem_step_s": STEP, "gas_step_s": min(2e-5, frame_s), "frame_interval_s": frame_s},
     }
 
 
@@ -63,42 +70,86 @@ def check_impact(work: Path, figures: Path) -> list[Row]:
     return rows
 
 
-def rolling_velocity(times: np.ndarray) -> np.ndarray:
-    """Velocity of a sphere that starts to slide without spin [m/s]: friction until it rolls at 5/7."""
-    return np.maximum(SLIDE_SPEED - FRICTION * GRAVITY * times, 5 / 7 * SLIDE_SPEED)
+def deepest_overlap(law: str) -> float:
+    """How deep two equal spheres without damping go into each other [m].
+
+    Hertz by its energy (Johnson 1985, Contact Mechanics, ch. 11); Hooke's spring, as stiff as Hertz's in an impact at
+    the speed sqrt(g W), in proportion to the speed.
+    """
+    mass = DENSITY * np.pi / 6 * SPHERE**3 / 2  # reduced, as is the radius of the contact
+    stiffness = 16 / 15 * MODULUS * (SPHERE / 4) ** 0.5
+    approach = 2 * SPEED
+    matched = np.sqrt(GRAVITY * WIDTH) if law == "hooke" else approach
+    return float((mass * matched**2 / stiffness) ** 0.4 * approach / matched)
+
+
+def check_overlap(work: Path) -> list[Row]:
+    """Rows of how deep equal spheres go into each other by either law."""
+    rows = []
+    for law in LAWS:
+        gap = SPHERE + 1e-4
+        spheres = np.array([[0.008, 0.01, SPEED, 0, SPHERE], [0.008 + gap, 0.01, -SPEED, 0, SPHERE]])
+        sections = case_sections(FINE_FRAME, restitution_1=1.0, law=law)
+        frames = run_particles(Setup(work / f"overlap_{law}", sections, spheres, {"gravity": 0.0}), SQUEEZE)
+        found = SPHERE - np.diff(frames[:, :, 1]).min()
+        theory = deepest_overlap(law)
+        source = "energy of the spring; hooke: as deep as hertz at sqrt(g W), in proportion to the speed"
+        rows.append(
+            Row(f"largest overlap of an impact by {law} over its diameter [1]", found / SPHERE, theory / SPHERE,
+                NEAR, source)
+        )  # fmt: skip
+    return rows
+
+
+def rolling_velocity(times: np.ndarray, resistance: float) -> np.ndarray:
+    """Velocity of a sphere that starts to slide without spin [m/s], under a coefficient of rolling friction [1]."""
+    spin_up = 5 / 2 * (FRICTION - resistance) * GRAVITY  # of its surface [m/s2]
+    met = SLIDE_SPEED / (FRICTION * GRAVITY + spin_up)
+    sliding = SLIDE_SPEED - FRICTION * GRAVITY * np.minimum(times, met)
+    return sliding - 5 / 7 * resistance * GRAVITY * np.maximum(times - met, 0.0)
+
+
+def slide(folder: Path, resistance: float) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    """Times [s], velocities [m/s] and surface velocities of the spin [m/s] of a sphere on the bottom."""
+    radius, mass = SPHERE / 2, DENSITY * np.pi / 6 * SPHERE**3
+    # Hertz: the overlap at which the bottom carries the weight
+    overlap = (mass * GRAVITY / (4 / 3 * MODULUS * radius**0.5)) ** (2 / 3)
+    spheres = np.array([[0.005, radius - overlap, SLIDE_SPEED, 0, SPHERE]])
+    frame = 2e-4
+    sections = case_sections(frame, rolling_friction_1=resistance)
+    frames = run_particles(Setup(folder, sections, spheres), SLIDE)[:, 0]
+    return frame * np.arange(len(frames)), frames[:, 3], frames[:, 5] * radius
 
 
 def check_rolling(work: Path, figures: Path) -> list[Row]:
-    """Rows and figure of the sphere that slides on the bottom until it rolls."""
-    radius, mass = SPHERE / 2, DENSITY * np.pi / 6 * SPHERE**3
-    modulus = YOUNG / (2 * (1 - POISSON**2))
-    # Hertz: the overlap at which the bottom carries the weight
-    overlap = (mass * GRAVITY / (4 / 3 * modulus * radius**0.5)) ** (2 / 3)
-    spheres = np.array([[0.005, radius - overlap, SLIDE_SPEED, 0, SPHERE]])
-    frame = 2e-4
-    frames = run_particles(Setup(work / "rolling", case_sections(frame), spheres), SLIDE)[:, 0]
-    times = frame * np.arange(len(frames))
-    velocity, spin = frames[:, 3], frames[:, 5]
-    theory = rolling_velocity(times)
+    """Rows and figure of the sphere that slides on the bottom until it rolls, freely and against resistance."""
+    times, velocity, surface = slide(work / "rolling", 0.0)
+    theory = rolling_velocity(times, 0.0)
     gap = float(np.abs(velocity - theory).max() / SLIDE_SPEED)
+    _, braked, _ = slide(work / "rolling_resistance", ROLLING_FRICTION)
+    braked_theory = rolling_velocity(times, ROLLING_FRICTION)
+    late = times > LATE * SLIDE
+    slope = np.polyfit(times[late], braked[late], 1)[0]
     source = "friction mu g until v = omega r, angular momentum about the contact kept: v = 5/7 v0"
     draw(
-        figures / "rolling", [Curve("sphere on the bottom", times, velocity, theory)],
+        figures / "rolling",
+        [
+            Curve("sphere on the bottom", times, velocity, theory),
+            Curve(f"rolling friction {ROLLING_FRICTION:g}", times, braked, braked_theory),
+        ],
         "time [s]", "velocity [m/s]",
     )  # fmt: skip
     return [
         Row("velocity of rolling over that of sliding [1]", velocity[-1] / SLIDE_SPEED, 5 / 7, NEAR, source),
-        Row(
-            "spin times radius over velocity at the end [1]",
-            spin[-1] * radius / velocity[-1],
-            1,
-            NEAR,
-            source,
-        ),
+        Row("spin times radius over velocity at the end [1]", surface[-1] / velocity[-1], 1, NEAR, source),
         Row("largest gap of the velocity on the way over its start [1]", gap, 0, NEAR, source),
-    ]
+        Row(
+            f"deceleration of rolling with rolling friction {ROLLING_FRICTION:g} over gravity [1]",
+            -slope / GRAVITY, 5 / 7 * ROLLING_FRICTION, NEAR, "torque mu_r m g r about the contact: 5/7 mu_r g",
+        ),
+    ]  # fmt: skip
 
 
 def check(work: Path, solver: Path, figures: Path) -> list[Row]:
     """Rows and figures of both; they need no gas."""
-    return check_impact(work, figures) + check_rolling(work, figures)
+    return check_impact(work, figures) + check_overlap(work) + check_rolling(work, figures)
