@@ -211,6 +211,13 @@ def test_walls_in_front_and_behind_count_only_where_the_gas_does_not_carry_the_b
     assert decision(replace(scene, velocity=0.1, friction=1e-6), name) == "drop"
 
 
+def test_rolling_resistance_is_built_by_its_key():
+    case = load_case(ROOT / "cases" / "short" / "case.yaml")
+    case["contact"]["rolling_friction_1"] = 0.01
+    rows = audit.audit(scene_numbers.scene_of(case)).set_index("physics")
+    assert rows.loc["rolling resistance", ["decision", "built", "agrees"]].tolist() == ["drop", "yes", "no"]
+
+
 def test_the_table_and_the_log_of_the_stage(case, tmp_path, caplog):
     table = tmp_path / "audit.csv"
     with caplog.at_level("INFO", "bedchain"):

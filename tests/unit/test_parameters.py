@@ -63,6 +63,13 @@ def test_many_layers_have_walls_and_whole_gas_cells_across():
     assert given() == [1, 0.005, 1, "empty"]
 
 
+def test_rolling_resistance_is_on_where_it_has_a_coefficient(values, paper):
+    assert (values["contact_law"], values["rolling_law"], values["rolling_friction"]) == ("hertz", "off", 0)
+    paper["contact"]["rolling_friction_1"] = 0.01
+    found = {parameter.name: parameter.value for parameter in solver_parameters(paper, load_schema())}
+    assert (found["rolling_law"], found["rolling_friction"]) == ("epsd2", 0.01)
+
+
 def test_many_layers_take_more_disk():
     case = load_case(ROOT / "cases" / "mueller" / "case.yaml")
     thin = case | {"bed": case["bed"] | {"layers": "one"}}
