@@ -15,6 +15,7 @@ import study_tradeoff as stage
 from bedchain.case import load_case
 from bedchain.errors import UserError
 from bedchain.tradeoff import bed_half, chain_half, settings
+from bedchain.tradeoff.observables import seen_errors
 from bedchain.tradeoff.bed_variants import BedVariant
 from bedchain.variants import Variant
 from measure_mixing import measure_mixing
@@ -175,7 +176,7 @@ def test_a_bed_is_measured_against_all_realisations(walkers, tmp_path):
     values = np.load(walkers.folder / "trajectory.npy").astype(float)
     write_run(tmp_path, values, np.arange(FRAMES) * 0.025, SIZE, SIZE)
     write_series(tmp_path, np.arange(0, 3.5, 5e-3), 2 * PRESSURE, HEIGHT, NUMBER)
-    found = bed_half.seen(tmp_path, case, bench.reference)
+    found = seen_errors(bench.reference, bed_half.seen(tmp_path, case))
     assert not (tmp_path / "trajectory.npy").exists()
     # three realisations, one of which it is: two thirds of the squares of two differences
     assert found["mixing_floors_1"] == pytest.approx(np.sqrt(4 / 3), rel=0.25)
@@ -232,7 +233,8 @@ def test_figures_of_the_study_are_drawn(walkers, tmp_path):
         write_run(tmp_path / name, values, np.arange(FRAMES) * 0.025, SIZE, SIZE)
         write_series(tmp_path / name, np.arange(0, 3.5, 5e-3), PRESSURE, HEIGHT, NUMBER)
         labels = {"half": "dem", "axis": "realisation" if name == "base" else "ablation", "variant": name}
-        rows.append(labels | {"cost_s": cost_s} | bed_half.seen(tmp_path / name, case, bench.reference))
+        errors = seen_errors(bench.reference, bed_half.seen(tmp_path / name, case))
+        rows.append(labels | {"cost_s": cost_s} | errors)
     pd.concat([walkers.table.replace("", np.nan), pd.DataFrame(rows)]).to_csv(tmp_path / "t.csv", index=False)
     plot_variants(tmp_path / "t.csv", *outputs(tmp_path / "b", "b"), DPI)
     drawn = assert_drawn(tmp_path / "b", "b").set_index("variant")

@@ -2,6 +2,7 @@
 """Settings, observables, presets and variants of the trade-off study."""
 
 import sys
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -18,10 +19,11 @@ from bedchain.errors import UserError
 from bedchain.fidelity import count_near
 from bedchain.grid import Grid
 from bedchain.noise import noise_floor
+from bedchain.tradeoff import bed_half
 from bedchain.tradeoff.bed_half import on_one_rank, simulate_all, solver_memory
 from bedchain.tradeoff.bed_variants import BedVariant, bed_variants, variants_or_exit, wanted_variants
 from bedchain.tradeoff.chain_half import MOMENTS, half_moments
-from bedchain.tradeoff.observables import Reference, curve_errors, density_errors, scalar_errors
+from bedchain.tradeoff.observables import Reference, Seen, curve_errors, density_errors, scalar_errors
 from bedchain.tradeoff.presets import choose, knee, nominal_cell, pareto_front, write_presets
 from bedchain.tradeoff.reference import granular_temperature, mixing_time
 from bedchain.tradeoff.settings import FACTORIAL, ORDER, Own, settings
@@ -123,6 +125,42 @@ def test_without_repeats_there_is_an_error_and_no_floor():
     height = scalar_errors(alone, {"bed_height": 0.061})
     assert height["bed_height_error_m"] == pytest.approx(1e-3)
     assert np.isnan(height["bed_height_floors_1"]) and np.isnan(height["bed_height_ci_low_m"])
+
+
+def test_further_realisations_join_the_reference():
+    whole = realisations(number=6)
+    first = Reference(
+        whole.curves[:4], True, whole.densities[:4], {"bed_height": whole.scalars["bed_height"][:4]}
+    )
+    others = [
+        Seen(whole.curves[at], whole.densities[at], {"bed_height": whole.scalars["bed_height"][at]})
+        for at in (4, 5)
+    ]
+    joined = first.joined(others)
+    assert joined.floors() == pytest.approx(whole.floors(), nan_ok=True)
+    assert first.joined([]) is first
+    # curves of several starts are no realisations
+    alone = replace(first, repeated=False).joined(others)
+    assert len(alone.curves) == 4 and len(alone.densities) == 6
+
+
+def test_a_realisation_is_not_compared_with_itself(monkeypatch, tmp_path):
+    reference = realisations(number=3)
+    known = {"base": 0.05, "seed_1": 0.07, "friction_0": 0.08}
+
+    def bed_row(case_file, one, folder):
+        name = one.variant.name
+        bed = Seen(reference.curves[0], reference.densities[0], {"bed_height": known[name]})
+        return {"variant": name, "cost_s": 1.0, "problem": ""}, bed
+
+    monkeypatch.setattr(bed_half, "bed_row", bed_row)
+    variants = bed_variants(load_case(SHORT))
+    rows = simulate_all(SHORT, [variants[name] for name in known], tmp_path, reference, at_once=1)
+    own = list(reference.scalars["bed_height"])
+    for row, pool in zip(rows, ([0.07], [0.05], [0.05, 0.07]), strict=True):
+        error = known[row["variant"]] - np.mean(own + pool)
+        assert row["bed_height_error_m"] == pytest.approx(error)
+        assert row["bed_height_floors_1"] == pytest.approx(error / np.std(own + pool, ddof=1))
 
 
 def test_densities_are_compared_half_by_half():

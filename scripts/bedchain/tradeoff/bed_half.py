@@ -14,8 +14,8 @@ from bedchain.comparison import read_series
 from bedchain.errors import UserError
 from bedchain.runs import Run, open_run
 from bedchain.stage import LOG
-from bedchain.tradeoff.bed_variants import BedVariant
-from bedchain.tradeoff.observables import Reference, curve_errors, density_errors, scalar_errors
+from bedchain.tradeoff.bed_variants import REALISATION, BedVariant
+from bedchain.tradeoff.observables import Reference, Seen, seen_errors
 from bedchain.tradeoff.reference import curves_seen, densities_seen, scalars_seen
 from bedchain.trajectory import read_manifest, write_trajectory
 from bedchain.variants import Variant, simulate
@@ -45,35 +45,39 @@ def simulate_all(
     folder : Path
         Gets a folder for each of them, whose finished segments are taken up again after a stop.
     reference : Reference
+        The run and its repeats; those variants that are further realisations of the same bed join them.
     at_once : int
         Variants side by side, on one rank each.
 
     Returns
     -------
     list of dict
-        One a variant: `labels`, cost, errors, ``problem`` (empty where all went well).
+        One a variant: what it is, cost, errors, ``problem`` (empty where all went well).
     """
-    begun, rows = time.monotonic(), {}
+    begun, rows, found = time.monotonic(), {}, {}
     with ThreadPoolExecutor(max_workers=at_once) as executor:
-        jobs = {
-            executor.submit(bed_row, case_file, one, folder / one.variant.name, reference): one
-            for one in wanted
-        }
+        jobs = {executor.submit(bed_row, case_file, one, folder / one.variant.name): one for one in wanted}
         try:
             for number, job in enumerate(as_completed(jobs), 1):
-                name, row = jobs[job].variant.name, job.result()
+                name, (row, bed) = jobs[job].variant.name, job.result()
                 rows[name] = row
+                if bed:
+                    found[name] = bed
                 left_s = (time.monotonic() - begun) / number * (len(wanted) - number)
                 said = row["problem"].splitlines()[0] if row["problem"] else f"{row['cost_s']:.0f} s"
                 LOG.info("%d of %d beds, %s: %s; about %.0f s left", number, len(wanted), name, said, left_s)
         except BaseException:
             executor.shutdown(wait=False, cancel_futures=True)
             raise
+    alike = [one.variant.name for one in wanted if one.axis == REALISATION and one.variant.name in found]
+    for name, bed in found.items():
+        # nothing is compared with itself
+        rows[name] |= seen_errors(reference.joined([found[other] for other in alike if other != name]), bed)
     return [rows[one.variant.name] for one in wanted]
 
 
-def bed_row(case_file: Path, one: BedVariant, folder: Path, reference: Reference) -> Row:
-    """Simulate one variant, or go on with it, and compare it with the reference."""
+def bed_row(case_file: Path, one: BedVariant, folder: Path) -> tuple[Row, Seen | None]:
+    """Simulate one variant, or go on with it: what it is and cost, and what it did where all went well."""
     labels = {"half": HALF, "axis": one.axis, "variant": one.variant.name, "changed": one.changed}
     try:
         case, memory_mb = watched(
@@ -81,9 +85,9 @@ def bed_row(case_file: Path, one: BedVariant, folder: Path, reference: Reference
         )
         wall_s = sum(part["wall_s"] for part in read_manifest(folder / "dem.json")["segments"])
         cost = {"run_s": wall_s, "cost_s": wall_s, "memory_mb": memory_mb}
-        return labels | cost | seen(folder, case, reference) | {"problem": ""}
+        return labels | cost | {"problem": ""}, seen(folder, case)
     except UserError as error:
-        return labels | {"problem": str(error)}
+        return labels | {"problem": str(error)}, None
 
 
 def on_one_rank(variant: Variant) -> Variant:
@@ -91,15 +95,12 @@ def on_one_rank(variant: Variant) -> Variant:
     return Variant(variant.name, dict(variant.changes) | {"run.ranks": 1})
 
 
-def seen(folder: Path, case: Case, reference: Reference) -> Row:
-    """Errors of a finished run against the reference, as columns; its trajectory is not kept."""
+def seen(folder: Path, case: Case) -> Seen:
+    """What a finished run did; its trajectory is not kept."""
     try:
         run = parsed(folder, case)
-        return (
-            curve_errors(reference, curves_seen(run, case)[None, None])
-            | density_errors(reference, densities_seen(run, case)[None])
-            | scalar_errors(reference, scalars_seen(run, read_series(folder / "bed_series.csv"), case))
-        )
+        scalars = scalars_seen(run, read_series(folder / "bed_series.csv"), case)
+        return Seen(curves_seen(run, case), densities_seen(run, case), scalars)
     finally:
         for name in ("trajectory.npy", "trajectory.json"):
             (folder / name).unlink(missing_ok=True)

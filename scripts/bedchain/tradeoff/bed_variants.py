@@ -17,7 +17,9 @@ STIFFNESSES = (0.1, 0.4, 4.0, 10.0)
 STEPS = (0.5, 2.5)
 GAS_STEPS = (0.2, 0.5, 2.0)
 GAS_CELLS = (0.5, 2.0, 4.0)
-SMOOTHINGS = (10.0,)  # in diameters; what is shorter than 1.4 gas cells changes nothing, the kernel is as wide
+SMOOTHINGS = (
+    10.0,
+)  # in diameters; what is shorter than 1.4 gas cells changes nothing, the kernel is as wide
 # in diameters; the first by the conversion of Hoomans et al. 1996
 THICKNESSES = (0.859, 1.2)
 FRICTIONS = (0.0, 0.3)
@@ -32,6 +34,7 @@ SEEDS = 2
 PRIMES = (2, 5)
 ROUND_OFF = 1e-9
 OPTIONS = ("dem",)
+REALISATION = "realisation"  # the axis of those that differ in their random start alone
 
 
 @dataclass(frozen=True)
@@ -67,7 +70,7 @@ def bed_variants(case: Case) -> dict[str, BedVariant]:
         left out.
     """
     gas = case["gas"]["model"] != "none"
-    found = {"base": BedVariant("realisation", Variant("base"))}
+    found = {"base": BedVariant(REALISATION, Variant("base"))}
     for axis, name, changes in [*_particles(case), *(_gas(case) if gas else ())]:
         if any(case_value(case, key) != value for key, value in changes.items()):
             found[name] = BedVariant(axis, Variant(name, changes))
@@ -159,7 +162,7 @@ def _particles(case: Case) -> Iterator[tuple[str, str, dict[str, Any]]]:
     seed = case["seed"]
     for number in range(1, SEEDS + 1):
         seed = next(prime for prime in range(seed + SEED_SPACING, 2 * seed) if is_prime(prime))
-        yield "realisation", f"seed_{number}", {"seed": seed}
+        yield REALISATION, f"seed_{number}", {"seed": seed}
 
 
 def _gas(case: Case) -> Iterator[tuple[str, str, dict[str, Any]]]:

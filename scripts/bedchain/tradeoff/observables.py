@@ -1,8 +1,9 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """What is compared: mixing curves and densities of the reference, errors against them, in noise floors."""
 
-from dataclasses import dataclass
-from typing import Any
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+from typing import Any, Self
 
 import numpy as np
 from numpy.typing import NDArray
@@ -10,7 +11,7 @@ from scipy import stats
 
 from bedchain.bootstrap import band
 from bedchain.noise import LEVEL, ROUND_OFF
-from bedchain.scores import SIDES, deviations, distances, interval, mean_of_others, resampled, rms
+from bedchain.scores import SIDES, deviations, distances, interval, mean_of_others, resampled, rms, stacked
 
 Array = NDArray[np.float64]
 Row = dict[str, Any]
@@ -32,6 +33,25 @@ UNITS = dict.fromkeys((*CURVES, DENSITY), "1") | SCALARS
 REPLICATES = 1000
 # of the intervals only: the same data give the same interval
 INTERVAL_SEED = 23
+
+
+@dataclass(frozen=True)
+class Seen:
+    """What one simulated bed did over the comparison window.
+
+    Attributes
+    ----------
+    curves : (n_frames, 4) array
+        Mixing curves from the first frame after the start [1].
+    densities : (2, n_cells) array
+        Mean shares in the cells over either half of the window [1].
+    scalars : dict of str to float
+        By the names of `SCALARS`.
+    """
+
+    curves: Array
+    densities: Array
+    scalars: dict[str, float]
 
 
 @dataclass(frozen=True)
@@ -73,11 +93,32 @@ class Reference:
             found[name] = float(known.std(ddof=1)) if known.size > 1 else np.nan
         return found
 
+    def joined(self, others: Sequence[Seen]) -> Self:
+        """The reference with further realisations of its bed; curves join those of repeats only."""
+        if not others:
+            return self
+        curves = [*self.curves, *(one.curves for one in others)] if self.repeated else self.curves
+        scalars = {
+            name: (*values, *(one.scalars[name] for one in others if name in one.scalars))
+            for name, values in self.scalars.items()
+        }
+        densities = np.stack([*self.densities, *(one.densities for one in others)])
+        return replace(self, curves=stacked(list(curves)), densities=densities, scalars=scalars)
+
     def _between_densities(self) -> Array:
         runs, halves, n_cells = self.densities.shape
         table = self.densities.reshape(runs * halves, 1, n_cells)
         group = np.tile(np.arange(halves), runs) if runs > 1 else np.zeros(halves, np.int64)
         return distances(table, mean_of_others(table, group))
+
+
+def seen_errors(reference: Reference, one: Seen) -> Row:
+    """Errors of all observables of a simulated bed, as columns."""
+    return (
+        curve_errors(reference, one.curves[None, None])
+        | density_errors(reference, one.densities[None])
+        | scalar_errors(reference, one.scalars)
+    )
 
 
 def curve_errors(reference: Reference, curves: Array) -> Row:

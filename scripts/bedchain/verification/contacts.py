@@ -73,8 +73,8 @@ def check_impact(work: Path, figures: Path) -> list[Row]:
 def deepest_overlap(law: str) -> float:
     """How deep two equal spheres without damping go into each other [m].
 
-    Hertz by its energy (Johnson 1985, Contact Mechanics, ch. 11); Hooke's spring, as stiff as Hertz's in an impact at
-    the speed sqrt(g W), in proportion to the speed.
+    Hertz by its energy (Johnson 1985, Contact Mechanics, ch. 11); Hooke's spring, as stiff as Hertz's in an
+    impact at the speed sqrt(g W), in proportion to the speed.
     """
     mass = DENSITY * np.pi / 6 * SPHERE**3 / 2  # reduced, as is the radius of the contact
     stiffness = 16 / 15 * MODULUS * (SPHERE / 4) ** 0.5
@@ -94,15 +94,13 @@ def check_overlap(work: Path) -> list[Row]:
         found = SPHERE - np.diff(frames[:, :, 1]).min()
         theory = deepest_overlap(law)
         source = "energy of the spring; hooke: as deep as hertz at sqrt(g W), in proportion to the speed"
-        rows.append(
-            Row(f"largest overlap of an impact by {law} over its diameter [1]", found / SPHERE, theory / SPHERE,
-                NEAR, source)
-        )  # fmt: skip
+        quantity = f"largest overlap of an impact by {law} over the diameter [1]"
+        rows.append(Row(quantity, found / SPHERE, theory / SPHERE, NEAR, source))
     return rows
 
 
 def rolling_velocity(times: np.ndarray, resistance: float) -> np.ndarray:
-    """Velocity of a sphere that starts to slide without spin [m/s], under a coefficient of rolling friction [1]."""
+    """Velocity of a sphere that starts to slide without spin [m/s], by its rolling friction [1]."""
     spin_up = 5 / 2 * (FRICTION - resistance) * GRAVITY  # of its surface [m/s2]
     met = SLIDE_SPEED / (FRICTION * GRAVITY + spin_up)
     sliding = SLIDE_SPEED - FRICTION * GRAVITY * np.minimum(times, met)
@@ -122,7 +120,7 @@ def slide(folder: Path, resistance: float) -> tuple[np.ndarray, np.ndarray, np.n
 
 
 def check_rolling(work: Path, figures: Path) -> list[Row]:
-    """Rows and figure of the sphere that slides on the bottom until it rolls, freely and against resistance."""
+    """Rows and figure of the sphere that slides on the bottom until it rolls, freely or resisted."""
     times, velocity, surface = slide(work / "rolling", 0.0)
     theory = rolling_velocity(times, 0.0)
     gap = float(np.abs(velocity - theory).max() / SLIDE_SPEED)
@@ -139,15 +137,14 @@ def check_rolling(work: Path, figures: Path) -> list[Row]:
         ],
         "time [s]", "velocity [m/s]",
     )  # fmt: skip
+    braking = f"deceleration of rolling with rolling friction {ROLLING_FRICTION:g} over gravity [1]"
+    torque = "torque mu_r m g r about the contact: 5/7 mu_r g"
     return [
         Row("velocity of rolling over that of sliding [1]", velocity[-1] / SLIDE_SPEED, 5 / 7, NEAR, source),
         Row("spin times radius over velocity at the end [1]", surface[-1] / velocity[-1], 1, NEAR, source),
         Row("largest gap of the velocity on the way over its start [1]", gap, 0, NEAR, source),
-        Row(
-            f"deceleration of rolling with rolling friction {ROLLING_FRICTION:g} over gravity [1]",
-            -slope / GRAVITY, 5 / 7 * ROLLING_FRICTION, NEAR, "torque mu_r m g r about the contact: 5/7 mu_r g",
-        ),
-    ]  # fmt: skip
+        Row(braking, -slope / GRAVITY, 5 / 7 * ROLLING_FRICTION, NEAR, torque),
+    ]
 
 
 def check(work: Path, solver: Path, figures: Path) -> list[Row]:
