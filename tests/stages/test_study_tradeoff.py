@@ -15,8 +15,8 @@ import study_tradeoff as stage
 from bedchain.case import load_case
 from bedchain.errors import UserError
 from bedchain.tradeoff import bed_half, chain_half, settings
-from bedchain.tradeoff.observables import seen_errors
 from bedchain.tradeoff.bed_variants import BedVariant
+from bedchain.tradeoff.observables import seen_errors
 from bedchain.variants import Variant
 from measure_mixing import measure_mixing
 from plot_tradeoff import plot_tradeoff
