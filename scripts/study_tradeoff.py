@@ -30,7 +30,6 @@ from bedchain.tradeoff.observables import Reference, all_columns
 from bedchain.tradeoff.reference import compared, own_grid, realisations, splits_of
 from bedchain.tradeoff.settings import Own
 
-LIBRARY = Path(chain_half.__file__).parent
 LABELS = ["half", "axis", "variant", "changed", "model", "estimator", "cell_width_m", "cell_height_m",
           "lag_s", "learning_start_s", "learning_end_s", "tracers"]  # fmt: skip
 COSTS = ["learn_s", "run_s", "cost_s", "memory_mb"]
@@ -61,9 +60,7 @@ def study_tradeoff(case_file: Path, folder: Path, variants: list[str], at_once: 
     if unknown := sorted(set(variants) - set(known)):
         raise UserError(f"there is no variant {', '.join(unknown)}: take of {', '.join(known)}")
     bench, files = opened(case, folder)
-    kept = only(
-        folder / "tradeoff" / "settings" / stamp([*files, *sorted(LIBRARY.glob("*.py"))], {"case": case})
-    )
+    kept = only(folder / "tradeoff" / "settings" / stamp(files, {"case": case}))
     table = pd.DataFrame(chain_half.measure_all(bench, kept))
     floors = bench.reference.floors()
     floor = floors["mixing"] if floors["mixing"] > ROUND_OFF else np.nan

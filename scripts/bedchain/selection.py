@@ -4,11 +4,10 @@
 No frame after the learning window is touched here; a run is handed over cut at its end.
 """
 
-import hashlib
-import json
 import time
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
+from functools import partial
 from pathlib import Path
 from typing import Any, TypeVar
 
@@ -22,10 +21,11 @@ from bedchain.cell_store import HISTORY_LAGS
 from bedchain.errors import UserError
 from bedchain.frames import DataError, Frames, lag_frames
 from bedchain.grid import Grid
+from bedchain.kept import record_of, remembered
 from bedchain.mixing import remaining_from_positions
 from bedchain.runs import Run
 from bedchain.scores import interval, resampled, rms, stacked
-from bedchain.stage import LOG, complete
+from bedchain.stage import LOG
 from bedchain.starts import Start, split, starts_in
 
 Made = TypeVar("Made")
@@ -214,13 +214,8 @@ def select(tried: Sequence[Candidate], run: Run, learning: slice, task: Task, ke
     )  # fmt: skip
     rows = []
     for number, candidate in enumerate(tried, 1):
-        file = kept / f"{hashlib.sha256(candidate.key.encode()).hexdigest()[:16]}.json"
-        if file.exists():
-            result = json.loads(file.read_text())
-        else:
-            result = validated(candidate, run, learning, task)
-            with complete(file) as temporary:
-                temporary.write_text(json.dumps(result))
+        record = record_of(kept, candidate.key)
+        result = remembered(record, partial(validated, candidate, run, learning, task))
         said = result["problem"] or f"validation rms {result['validation_rms']:.4f}"
         LOG.info("%d of %d, %s: %s", number, len(tried), candidate.key, said)
         rows.append(named(candidate, task.grid, run.interval_s) | result)

@@ -12,7 +12,7 @@ from persistent_walk import INTERVAL_S, write
 from bedchain.candidates import SETTINGS, Candidate, candidates, grid_of, scaled
 from bedchain.errors import UserError
 from bedchain.grid import Grid
-from bedchain.kept import only, stamp
+from bedchain.kept import only, record_of, remembered, stamp
 from bedchain.models import LEARNERS, learn
 from bedchain.runs import open_repeats, open_run, part_of
 from bedchain.selection import at_frames
@@ -167,3 +167,18 @@ def test_a_stamp_changes_with_data_and_settings_and_old_results_go(tmp_path):
     (only(tmp_path / "kept" / first) / "result").write_text("x")
     only(tmp_path / "kept" / "new")
     assert [folder.name for folder in (tmp_path / "kept").iterdir()] == ["new"]
+
+
+def test_a_result_is_made_once_and_a_failure_is_not_kept(tmp_path):
+    record, made = record_of(tmp_path / "new", "static 40"), []
+
+    def fail():
+        raise UserError("no")
+
+    with pytest.raises(UserError):
+        remembered(record, fail)
+    assert not record.exists()
+    for _ in range(2):
+        assert remembered(record, lambda: made.append(1) or {"rms": 0.5}) == {"rms": 0.5}
+    assert made == [1]
+    assert record_of(tmp_path / "new", "static 41") != record

@@ -1,7 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Run every code on the same bed, in turns, and keep each finished run: a study that was stopped goes on."""
 
-import json
 import os
 import re
 import resource
@@ -10,13 +9,14 @@ import time
 from collections.abc import Callable, Iterable
 from dataclasses import asdict, dataclass
 from pathlib import Path
+from typing import Any
 
 from bedchain.errors import UserError
+from bedchain.kept import remembered
 from bedchain.peers import bedfoam, dpmfoam, lammps, liggghts, yade
 from bedchain.peers.bed import Bed, fluidized_bed
 from bedchain.peers.outcome import Outcome, Peer
 from bedchain.segments import exclusive, input_stamp
-from bedchain.stage import complete
 
 CASES = Path("cases")
 STAT = Path("/proc/stat")
@@ -104,18 +104,18 @@ def measure(peer: Peer, bed: Bed, folder: Path, duration_s: float) -> tuple[Outc
 def run_once(peer: Peer, bed: Bed, folder: Path, duration_s: float, repeat: int) -> Run:
     """A run from its record, or made and recorded; a code that fails leaves a note and no record."""
     record = record_file(folder, bed, peer, duration_s, repeat)
-    if record.exists():
-        kept = json.loads(record.read_text(encoding="utf-8"))
-        return Run(**kept | {"outcome": Outcome(**kept["outcome"])})
+    work = folder / bed.name / "work" / record.stem
+
+    def made() -> dict[str, Any]:
+        outcome, others = measure(peer, bed, work, duration_s)
+        return asdict(Run(bed.name, peer.name, repeat, outcome, others))
+
     try:
-        outcome, others = measure(peer, bed, folder / bed.name / "work" / record.stem, duration_s)
+        found = remembered(record, made)
     except UserError as error:
         return Run(bed.name, peer.name, repeat, None, note=f"failed: {error}")
-    run = Run(bed.name, peer.name, repeat, outcome, others)
-    with complete(record) as temporary:
-        temporary.write_text(json.dumps(asdict(run), indent=1), encoding="utf-8")
-    shutil.rmtree(folder / bed.name / "work" / record.stem)
-    return run
+    shutil.rmtree(work, ignore_errors=True)
+    return Run(**found | {"outcome": Outcome(**found["outcome"])})
 
 
 def prepare(name: str, folder: Path, solver: Path, start_s: float | None) -> Bed:

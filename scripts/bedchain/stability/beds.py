@@ -120,7 +120,10 @@ def case_of(bed: Bed) -> dict[str, Any]:
         "particles": {
             "number": bed.number, "diameter_m": bed.diameter, "density_kg_m3": bed.density,
         },
-        "contact": {"young_modulus_Pa": bed.stiffness, "poisson_ratio_1": POISSON, "friction_1": FRICTION},
+        "contact": {
+            "young_modulus_Pa": bed.stiffness, "poisson_ratio_1": POISSON, "friction_1": FRICTION,
+            "rolling_friction_1": 0.0,
+        },
         "gas": {
             "density_kg_m3": GAS_DENSITY, "viscosity_Pa_s": VISCOSITY,
             "superficial_velocity_m_s": bed.velocity, "cell_size_m": times(bed.diameter, bed.cell),

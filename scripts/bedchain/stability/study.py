@@ -1,7 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Try every setting in a process of its own, for a limited time, and keep each verdict."""
 
-import json
 import re
 import shutil
 import time
@@ -11,14 +10,15 @@ from dataclasses import asdict
 from multiprocessing import get_context
 from multiprocessing.connection import Connection
 from pathlib import Path
+from typing import Any
 
 import pandas as pd
 
 from bedchain.errors import UserError
+from bedchain.kept import remembered
 from bedchain.segments import exclusive, input_stamp
 from bedchain.stability.settings import Known, Setting
 from bedchain.stability.verdict import CRASHED, FAULTS, HUNG, Verdict
-from bedchain.stage import complete
 
 LONGEST_S = 900.0  # of wall time for one setting; the longest takes a minute or two on an idle machine
 KEPT, WORK = "kept", "work"
@@ -88,18 +88,18 @@ def tried(
     setting: Setting, folder: Path, record: Path, known: Known, longest_s: float
 ) -> tuple[Verdict, float]:
     """A verdict and its wall time [s], from its record, or made and recorded."""
-    if record.exists():
-        kept = json.loads(record.read_text(encoding="utf-8"))
-        return Verdict(**kept["verdict"]), kept["wall_s"]
     work = folder / WORK / slug(setting)
-    start = time.monotonic()
-    verdict = limited(lambda: setting.run(work, known), longest_s)
-    wall_s = time.monotonic() - start
-    with complete(record) as temporary:
-        temporary.write_text(json.dumps({"verdict": asdict(verdict), "wall_s": wall_s}), encoding="utf-8")
+
+    def made() -> dict[str, Any]:
+        start = time.monotonic()
+        verdict = limited(lambda: setting.run(work, known), longest_s)
+        return {"verdict": asdict(verdict), "wall_s": time.monotonic() - start}
+
+    found = remembered(record, made)
+    verdict = Verdict(**found["verdict"])
     if verdict.outcome not in FAULTS:  # whose logs somebody will want to read
         shutil.rmtree(work, ignore_errors=True)
-    return verdict, wall_s
+    return verdict, found["wall_s"]
 
 
 def run_study(

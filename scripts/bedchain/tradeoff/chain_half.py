@@ -1,11 +1,10 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Learn and run chains of many settings, and measure cost and errors of each."""
 
-import hashlib
-import json
 import time
+from collections.abc import Callable
 from dataclasses import dataclass, replace
-from functools import lru_cache
+from functools import lru_cache, partial
 from pathlib import Path
 from typing import Any
 
@@ -16,11 +15,12 @@ from bedchain import models
 from bedchain.candidates import Candidate, grid_of
 from bedchain.frames import DataError, Frames
 from bedchain.grid import Grid
+from bedchain.kept import record_of, remembered
 from bedchain.regrid import regrid
 from bedchain.runs import Run
 from bedchain.scores import interval, resampled, rms, stacked
 from bedchain.selection import Task, at_frames, learned, observed_curves, timed
-from bedchain.stage import LOG, complete
+from bedchain.stage import LOG
 from bedchain.starts import Start, split, starts_in
 from bedchain.tradeoff.observables import INTERVAL_SEED, REPLICATES, Reference, curve_errors, density_errors
 from bedchain.tradeoff.settings import Own, Setting, settings
@@ -105,26 +105,26 @@ def measure_all(bench: Bench, kept: Path) -> list[Row]:
         One a setting: `labels`, cost, errors, ``problem`` (empty where all went well).
     """
     tried, rows, begun, made = settings(bench.own), [], time.monotonic(), 0
-    if any(not _file(kept, setting).exists() for setting in tried):
+    if any(not record_of(kept, setting.key).exists() for setting in tried):
         warm_up(bench)
     in_memory = lru_cache(maxsize=1)(lambda grid: bench.run.frames(grid, bench.own.learning))
     for number, setting in enumerate(tried, 1):
-        file = _file(kept, setting)
-        if file.exists():
-            result = json.loads(file.read_text())
-        else:
-            made += 1
-            try:
-                result = measured(setting, bench, in_memory(grid_of(setting.candidate, bench.own.grid)))
-            except DataError as problem:
-                result = {"problem": str(problem)}
-            with complete(file) as temporary:
-                temporary.write_text(json.dumps(result))
+        record = record_of(kept, setting.key)
+        made += not record.exists()
+        result = remembered(record, partial(tested, setting, bench, in_memory))
         left_s = (time.monotonic() - begun) / max(made, 1) * (len(tried) - number)
         LOG.info("%d of %d chains, %s: %s; about %.0f s left", number, len(tried), setting.key,
                  result["problem"] or f"rms error {result['mixing_error_1']:.4f}", left_s)  # fmt: skip
         rows.append(labels(setting, bench) | result)
     return rows
+
+
+def tested(setting: Setting, bench: Bench, in_memory: Callable[[Grid], Frames]) -> Row:
+    """Cost and errors of a setting, or the problem that it has with these data."""
+    try:
+        return measured(setting, bench, in_memory(grid_of(setting.candidate, bench.own.grid)))
+    except DataError as problem:
+        return {"problem": str(problem)}
 
 
 def warm_up(bench: Bench) -> None:
@@ -288,10 +288,6 @@ def _begin(
     number = found.cells.shape[1]
     chosen = rng.choice(number, tracers, replace=tracers > number)
     return Frames(found.times_s, found.x_m[:, chosen], found.z_m[:, chosen], found.cells[:, chosen])
-
-
-def _file(kept: Path, setting: Setting) -> Path:
-    return kept / f"{hashlib.sha256(setting.key.encode()).hexdigest()[:16]}.json"
 
 
 def _draws(setting: Setting) -> int:
