@@ -28,6 +28,9 @@ TITLES = {
     "granular_temperature": "granular\ntemperature",
 }
 COLOURS, COST_COLOUR, LINE_IN = "RdBu_r", "#4477aa", 0.19
+FRONT_IN, FRONT_COLOUR = 3.2, "#bb5566"
+# the same bed: its own line of the table, and others from another random start
+REALISATION = "realisation"
 # colours end here, numbers do not
 MOST_FLOORS = 15.0
 REASON_LETTERS = 110
@@ -54,11 +57,13 @@ def plot_variants(tradeoff: Path, png: Path, pdf: Path, csv: Path, resolution_dp
     if table.empty:
         raise UserError(f"{tradeoff} holds no simulated bed: take --config tradeoff='{{dem: all}}'")
     with figure_style():
-        figure, (axes, costs) = plt.subplots(
-            1, 2, figsize=(DOUBLE_COLUMN_IN, 1.2 + LINE_IN * len(table)), width_ratios=[5, 1], sharey=True
-        )
+        lines_in = 1.2 + LINE_IN * len(table)
+        figure = plt.figure(figsize=(DOUBLE_COLUMN_IN, lines_in + FRONT_IN))
+        upper, lower = figure.subfigures(2, 1, height_ratios=[lines_in, FRONT_IN])
+        axes, costs = upper.subplots(1, 2, width_ratios=[5, 1], sharey=True)
         _draw_changes(axes, table)
         _draw_costs(costs, table)
+        _draw_front(lower.subplots(), table)
         save_figure(figure, png, pdf, resolution_dpi)
     write_csv(table, csv)
 
@@ -69,8 +74,8 @@ def shown_rows(table: pd.DataFrame) -> pd.DataFrame:
     Returns
     -------
     DataFrame
-        axis, variant, changed, problem, cost_s, cost_over_base_1 and the observables of `TITLES` in noise
-        floors.
+        axis, variant, changed, problem, cost_s, cost_over_base_1, the observables of `TITLES` and the largest
+        change of them in noise floors, and whether nothing cheaper changes less (front, 0 or 1).
     """
     beds = table[table["half"] == "dem"]
     order = {
@@ -82,7 +87,10 @@ def shown_rows(table: pd.DataFrame) -> pd.DataFrame:
     found["cost_over_base_1"] = beds["cost_s"] / (base.iloc[0] if len(base) else np.nan)
     for name in TITLES:
         found[f"{name}_floors_1"] = beds[f"{name}_floors_1"]
-    return found.reset_index(drop=True)
+    found["largest_floors_1"] = found[[f"{name}_floors_1" for name in TITLES]].abs().max(axis=1)
+    rising = found.sort_values(["cost_s", "largest_floors_1"])["largest_floors_1"].dropna()
+    found["front"] = (rising < rising.cummin().shift(fill_value=np.inf)).astype(int)
+    return found.fillna({"front": 0}).astype({"front": int}).reset_index(drop=True)
 
 
 def _draw_changes(axes: Axes, table: pd.DataFrame) -> None:
@@ -117,6 +125,33 @@ def _draw_costs(axes: Axes, table: pd.DataFrame) -> None:
     axes.xaxis.set_minor_locator(NullLocator())
     axes.grid(axis="y", color="#e2e2e2", linewidth=0.5)
     axes.tick_params(labelleft=False)
+
+
+def _draw_front(axes: Axes, table: pd.DataFrame) -> None:
+    """The largest change of any observable over the cost, the front, and how far the same bed is."""
+    known = table[table["largest_floors_1"].notna() & table["cost_over_base_1"].notna()]
+    axes.plot(known["cost_over_base_1"], known["largest_floors_1"], "o", ms=4, color=COST_COLOUR)
+    same = known[known["axis"] == REALISATION]
+    axes.plot(same["cost_over_base_1"], same["largest_floors_1"], "s", ms=4, color="black")
+    if len(same):
+        axes.axhspan(0.0, same["largest_floors_1"].max(), color="#e8e8e8", zorder=0)
+    front = known[known["front"] == 1].sort_values("cost_over_base_1")
+    axes.step(
+        front["cost_over_base_1"], front["largest_floors_1"], where="post", color=FRONT_COLOUR, lw=1.0,
+        ls=(0, (4, 1.5)),
+    )  # fmt: skip
+    for row in known.to_dict("records"):
+        place = (row["cost_over_base_1"], row["largest_floors_1"])
+        name = str(row["variant"]).replace("_", " ")
+        axes.annotate(name, place, xytext=(3, 2), textcoords="offset points", fontsize=5.5)
+    axes.set(xscale="log", yscale="log", xlabel="cost over base [1]", ylabel="largest change\n[noise floors]")
+    for axis in (axes.xaxis, axes.yaxis):
+        axis.set_major_locator(LogLocator(subs=(1, 2, 5)))
+        axis.set_major_formatter("{x:g}")
+        axis.set_minor_locator(NullLocator())
+    axes.set_title(
+        "squares: the same bed, from other starts; dashed: nothing cheaper changes less", loc="left"
+    )
 
 
 if "snakemake" in globals():
