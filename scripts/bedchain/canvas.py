@@ -32,11 +32,15 @@ class Canvas:
         self.size_m = (width_m, height_m)
         self.pixel_m = diameter_m / PIXELS_PER_DIAMETER
         self.shape = tuple(max(1, round(length / self.pixel_m)) for length in (height_m, width_m))
-        self.colours = (255 * np.array([to_rgb(colour) for colour in colours])).astype(np.uint8)
-        reach = PIXELS_PER_DIAMETER // 2
-        rows, columns = np.mgrid[-reach : reach + 1, -reach : reach + 1]
+        self.palette = (255 * np.array([to_rgb(colour) for colour in ("white", *colours)])).astype(np.uint8)
+        self.reach = PIXELS_PER_DIAMETER // 2
+        # painted with a margin, for the discs whose centre is as far outside as they reach
+        self.margin = 2 * self.reach
+        self.row_length = self.shape[1] + 2 * self.margin
+        around = np.arange(-self.reach, self.reach + 1)
+        rows, columns = np.meshgrid(around, around, indexing="ij")
         inside = rows**2 + columns**2 <= (PIXELS_PER_DIAMETER / 2) ** 2
-        self.disc = rows[inside], columns[inside]
+        self.disc = (rows * self.row_length + columns)[inside]
 
     def discs(
         self, x_m: NDArray[np.floating], z_m: NDArray[np.floating], marked: NDArray[np.bool_]
@@ -54,14 +58,15 @@ class Canvas:
         (rows, columns, 3) uint8 array
             The first row is the lowest.
         """
-        picture = np.full((*self.shape, 3), 255, np.uint8)
-        colour = self.colours[np.where(marked, 0, 1)]
         row, column = (np.floor(np.asarray(place) / self.pixel_m).astype(int) for place in (z_m, x_m))
-        for up, aside in zip(*self.disc, strict=True):
-            at_row, at_column = row + up, column + aside
-            seen = (at_row >= 0) & (at_row < self.shape[0]) & (at_column >= 0) & (at_column < self.shape[1])
-            picture[at_row[seen], at_column[seen]] = colour[seen]
-        return picture
+        seen = (row >= -self.reach) & (row < self.shape[0] + self.reach)
+        seen &= (column >= -self.reach) & (column < self.shape[1] + self.reach)
+        centre = ((row + self.margin) * self.row_length + column + self.margin)[seen]
+        colour = np.where(marked[seen], 1, 2).astype(np.uint8)
+        picture = np.zeros((self.shape[0] + 2 * self.margin, self.row_length), np.uint8)
+        for pixel in self.disc:
+            picture.ravel()[centre + pixel] = colour
+        return self.palette[picture[self.margin :, self.margin :][: self.shape[0], : self.shape[1]]]
 
 
 def in_their_cells(
