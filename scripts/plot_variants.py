@@ -31,13 +31,15 @@ COLOURS, COST_COLOUR, LINE_IN = "RdBu_r", "#4477aa", 0.19
 FRONT_IN, FRONT_COLOUR = 3.2, "#bb5566"
 # the same bed: its own line of the table, and others from another random start
 REALISATION = "realisation"
+NEAR_COST = 1.15
+COST_PARTS = (1, 1.5, 2, 3, 5, 7)
 # colours end here, numbers do not
 MOST_FLOORS = 15.0
 REASON_LETTERS = 110
 
 
 def plot_variants(tradeoff: Path, png: Path, pdf: Path, csv: Path, resolution_dpi: int) -> None:
-    """Draw one line a variant: its change of each observable, and its cost over that of the case itself.
+    """Draw one line a variant: its change of each observable, and its cost over that of the bed itself.
 
     Parameters
     ----------
@@ -74,17 +76,18 @@ def shown_rows(table: pd.DataFrame) -> pd.DataFrame:
     Returns
     -------
     DataFrame
-        axis, variant, changed, problem, cost_s, cost_over_base_1, the observables of `TITLES` and the largest
-        change of them in noise floors, and whether nothing cheaper changes less (front, 0 or 1).
+        axis, variant, changed, problem, cost_s, cost_over_base_1 (base: the median of its own realisations),
+        the observables of `TITLES` and the largest change of them in noise floors, and whether nothing
+        cheaper changes less (front, 0 or 1).
     """
     beds = table[table["half"] == "dem"]
     order = {
         axis: number for number, axis in enumerate(dict.fromkeys(["realisation", *sorted(set(beds["axis"]))]))
     }
     beds = beds.assign(order=beds["axis"].map(order)).sort_values(["order", "variant"], kind="stable")
-    base = beds.loc[beds["variant"] == "base", "cost_s"]
+    base = beds.loc[beds["axis"] == REALISATION, "cost_s"].median()
     found = beds[["axis", "variant", "changed", "problem", "cost_s"]].copy()
-    found["cost_over_base_1"] = beds["cost_s"] / (base.iloc[0] if len(base) else np.nan)
+    found["cost_over_base_1"] = beds["cost_s"] / base
     for name in TITLES:
         found[f"{name}_floors_1"] = beds[f"{name}_floors_1"]
     found["largest_floors_1"] = found[[f"{name}_floors_1" for name in TITLES]].abs().max(axis=1)
@@ -120,7 +123,7 @@ def _draw_costs(axes: Axes, table: pd.DataFrame) -> None:
     if known:
         axes.axvline(1.0, color="black", lw=0.6)
     axes.set(xscale="log", xlabel="cost over\nbase [1]" if known else "cost [s]")
-    axes.xaxis.set_major_locator(LogLocator(subs=(1, 2, 5)))
+    axes.xaxis.set_major_locator(LogLocator(subs=(1, 2, 5, 7)))
     axes.xaxis.set_major_formatter("{x:g}")
     axes.xaxis.set_minor_locator(NullLocator())
     axes.grid(axis="y", color="#e2e2e2", linewidth=0.5)
@@ -140,13 +143,19 @@ def _draw_front(axes: Axes, table: pd.DataFrame) -> None:
         front["cost_over_base_1"], front["largest_floors_1"], where="post", color=FRONT_COLOUR, lw=1.0,
         ls=(0, (4, 1.5)),
     )  # fmt: skip
-    for row in known.to_dict("records"):
-        place = (row["cost_over_base_1"], row["largest_floors_1"])
-        name = str(row["variant"]).replace("_", " ")
-        axes.annotate(name, place, xytext=(3, 2), textcoords="offset points", fontsize=5.5)
+    # those that the crowd would hide, as dear as the same bed and no further from it, have no name here
+    near, least = known["cost_over_base_1"].between(1 / NEAR_COST, NEAR_COST), known["largest_floors_1"]
+    crowd = near & (least <= same["largest_floors_1"].max()) & (known["front"] == 0)
+    for number, row in enumerate(known[~crowd].sort_values("largest_floors_1").to_dict("records")):
+        side = number % 2
+        axes.annotate(
+            str(row["variant"]).replace("_", " "), (row["cost_over_base_1"], row["largest_floors_1"]),
+            xytext=(4 - 8 * side, 0), textcoords="offset points", fontsize=6, va="center",
+            ha=("left", "right")[side],
+        )  # fmt: skip
     axes.set(xscale="log", yscale="log", xlabel="cost over base [1]", ylabel="largest change\n[noise floors]")
-    for axis in (axes.xaxis, axes.yaxis):
-        axis.set_major_locator(LogLocator(subs=(1, 2, 5)))
+    for axis, parts in ((axes.xaxis, COST_PARTS), (axes.yaxis, (1, 2, 5))):
+        axis.set_major_locator(LogLocator(subs=parts))
         axis.set_major_formatter("{x:g}")
         axis.set_minor_locator(NullLocator())
     axes.set_title(

@@ -21,6 +21,7 @@ NAMES = ("fast", "balanced", "accurate")
 ERROR, COST = "validation_error_1", "cost_s"
 # how large an error the fast one may have: in noise floors, and over the lowest of all
 FAST_FLOORS, FAST_RATIO = 2.0, 1.5
+SAME_COST = 1.25  # times of milliseconds that differ by less are the same: another run has them the other way
 DIGITS = 3
 HEADER = "# SPDX-License-Identifier: GPL-3.0-or-later\n# Chosen by `snakemake tradeoff`, which says how.\n"
 
@@ -29,7 +30,8 @@ def choose(table: pd.DataFrame, floor: float) -> dict[str, int]:
     """Rows of the three presets.
 
     ``accurate`` has the lowest validation error. ``fast`` is the cheapest whose validation error is within
-    `FAST_FLOORS` noise floors or `FAST_RATIO` times the lowest, whichever allows more. ``balanced`` is the
+    `FAST_FLOORS` noise floors or `FAST_RATIO` times the lowest, whichever allows more; of those that cost up
+    to `SAME_COST` times as much, the one with the lowest validation error. ``balanced`` is the
     knee between the two: of those that nothing is both cheaper and more accurate than, the one furthest below
     the straight line from fast to accurate, in logarithms of cost and error; accurate where none is below.
 
@@ -56,7 +58,8 @@ def choose(table: pd.DataFrame, floor: float) -> dict[str, int]:
     front = pareto_front(valid)
     accurate = front.index[-1]
     limit = np.nanmax([FAST_FLOORS * floor, FAST_RATIO * front[ERROR].iloc[-1]])
-    fast = front.index[front[ERROR] <= limit][0]
+    cheapest = front.loc[front[ERROR] <= limit, COST].iloc[0]
+    fast = front.index[front[COST] <= SAME_COST * cheapest][-1]
     between = front.loc[fast:accurate]
     return {"fast": int(fast), "balanced": int(between.index[knee(between)]), "accurate": int(accurate)}
 
