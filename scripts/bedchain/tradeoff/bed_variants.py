@@ -17,9 +17,8 @@ STIFFNESSES = (0.1, 0.4, 4.0, 10.0)
 STEPS = (0.5, 2.5)
 GAS_STEPS = (0.2, 0.5, 2.0)
 GAS_CELLS = (0.5, 2.0, 4.0)
-SMOOTHINGS = (
-    10.0,
-)  # in diameters; what is shorter than 1.4 gas cells changes nothing, the kernel is as wide
+# in diameters; what is shorter than 1.4 gas cells changes nothing, since their own kernel is as wide
+SMOOTHINGS = (10.0,)
 # in diameters; the first by the conversion of Hoomans et al. 1996
 THICKNESSES = (0.859, 1.2)
 FRICTIONS = (0.0, 0.3)

@@ -26,7 +26,7 @@ LAWS = ("hertz", "hooke")
 SQUEEZE = 4e-4  # [s]: until two spheres have met and parted
 FINE_FRAME = 4e-6  # [s], a fiftieth of an impact
 ROLLING_FRICTION = 0.1
-LATE = 0.7  # share of that time after which the sphere rolls under either friction
+LATE = 0.7  # share of `SLIDE` after which the sphere rolls, resisted or not
 
 
 def case_sections(frame_s: float, **contact: float | str) -> dict[str, dict[str, Any]]:
