@@ -8,10 +8,12 @@ import numpy as np
 import pandas as pd
 from matplotlib import pyplot as plt
 from matplotlib.axes import Axes
+from matplotlib.axis import Axis
 from matplotlib.ticker import LogLocator, NullLocator
 
 from bedchain.errors import UserError
 from bedchain.figures import DOUBLE_COLUMN_IN, figure_style, save_figure
+from bedchain.pareto import pareto_front
 from bedchain.stage import stage, write_csv
 
 # heads of the columns; the first two have no sign
@@ -32,7 +34,6 @@ FRONT_IN, FRONT_COLOUR = 3.2, "#bb5566"
 # the same bed: its own line of the table, and others from another random start
 REALISATION = "realisation"
 NEAR_COST = 1.15
-COST_PARTS = (1, 1.5, 2, 3, 5, 7)
 # colours end here, numbers do not
 MOST_FLOORS = 15.0
 REASON_LETTERS = 110
@@ -82,7 +83,7 @@ def shown_rows(table: pd.DataFrame) -> pd.DataFrame:
     """
     beds = table[table["half"] == "dem"]
     order = {
-        axis: number for number, axis in enumerate(dict.fromkeys(["realisation", *sorted(set(beds["axis"]))]))
+        axis: number for number, axis in enumerate(dict.fromkeys([REALISATION, *sorted(set(beds["axis"]))]))
     }
     beds = beds.assign(order=beds["axis"].map(order)).sort_values(["order", "variant"], kind="stable")
     base = beds.loc[beds["axis"] == REALISATION, "cost_s"].median()
@@ -91,9 +92,8 @@ def shown_rows(table: pd.DataFrame) -> pd.DataFrame:
     for name in TITLES:
         found[f"{name}_floors_1"] = beds[f"{name}_floors_1"]
     found["largest_floors_1"] = found[[f"{name}_floors_1" for name in TITLES]].abs().max(axis=1)
-    rising = found.sort_values(["cost_s", "largest_floors_1"])["largest_floors_1"].dropna()
-    found["front"] = (rising < rising.cummin().shift(fill_value=np.inf)).astype(int)
-    return found.fillna({"front": 0}).astype({"front": int}).reset_index(drop=True)
+    found["front"] = found.index.isin(pareto_front(found, "cost_s", "largest_floors_1").index).astype(int)
+    return found.reset_index(drop=True)
 
 
 def _draw_changes(axes: Axes, table: pd.DataFrame) -> None:
@@ -123,9 +123,7 @@ def _draw_costs(axes: Axes, table: pd.DataFrame) -> None:
     if known:
         axes.axvline(1.0, color="black", lw=0.6)
     axes.set(xscale="log", xlabel="cost over\nbase [1]" if known else "cost [s]")
-    axes.xaxis.set_major_locator(LogLocator(subs=(1, 2, 5, 7)))
-    axes.xaxis.set_major_formatter("{x:g}")
-    axes.xaxis.set_minor_locator(NullLocator())
+    _label_parts(axes.xaxis, (1, 2, 5, 7))
     axes.grid(axis="y", color="#e2e2e2", linewidth=0.5)
     axes.tick_params(labelleft=False)
 
@@ -154,13 +152,18 @@ def _draw_front(axes: Axes, table: pd.DataFrame) -> None:
             ha=("left", "right")[side],
         )  # fmt: skip
     axes.set(xscale="log", yscale="log", xlabel="cost over base [1]", ylabel="largest change\n[noise floors]")
-    for axis, parts in ((axes.xaxis, COST_PARTS), (axes.yaxis, (1, 2, 5))):
-        axis.set_major_locator(LogLocator(subs=parts))
-        axis.set_major_formatter("{x:g}")
-        axis.set_minor_locator(NullLocator())
+    _label_parts(axes.xaxis, (1, 1.5, 2, 3, 5, 7))
+    _label_parts(axes.yaxis, (1, 2, 5))
     axes.set_title(
         "squares: the same bed, from other starts; dashed: nothing cheaper changes less", loc="left"
     )
+
+
+def _label_parts(axis: Axis, parts: tuple[float, ...]) -> None:
+    """Ticks of a logarithmic axis at these parts of each decade, as plain numbers."""
+    axis.set_major_locator(LogLocator(subs=parts))
+    axis.set_major_formatter("{x:g}")
+    axis.set_minor_locator(NullLocator())
 
 
 if "snakemake" in globals():

@@ -280,6 +280,7 @@ rule study_tradeoff:
             "kept",
             "models",
             "noise",
+            "pareto",
             "provenance",
             "regrid",
             "repeats",
@@ -341,7 +342,7 @@ rule plot_tradeoff:
 
 rule plot_variants:
     input:
-        modules("errors", "figures", "stage"),
+        modules("errors", "figures", "pareto", "stage"),
         tradeoff=rules.study_tradeoff.output.table,
     output:
         multiext(f"{FIGURES}/fig_tradeoff_dem", **FORMS),

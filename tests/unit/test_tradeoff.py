@@ -9,7 +9,8 @@ import yaml
 from bedchain.errors import UserError
 from bedchain.fidelity import count_near
 from bedchain.grid import Grid
-from bedchain.tradeoff.presets import choose, knee, nominal_cell, pareto_front, write_presets
+from bedchain.pareto import pareto_front
+from bedchain.tradeoff.presets import choose, knee, nominal_cell, write_presets
 from bedchain.tradeoff.settings import FACTORIAL, ORDER, Own, settings
 
 
@@ -78,7 +79,8 @@ def front_table():
 
 def test_presets_are_chosen_by_validation_and_cost():
     table = front_table()
-    assert pareto_front(table.iloc[:6]).index.tolist() == [0, 1, 3, 4, 2]
+    front = pareto_front(table.iloc[:6], "cost_s", "validation_error_1")
+    assert front.index.tolist() == [0, 1, 3, 4, 2]
     # two floors allow 0.09; the knee between it and the best is the one where the curve turns
     assert choose(table, 0.045) == {"fast": 1, "balanced": 3, "accurate": 2}
     # without a floor, half as much again as the lowest; what is between lies above the chord

@@ -14,6 +14,7 @@ import yaml
 from numpy.typing import NDArray
 
 from bedchain.errors import UserError
+from bedchain.pareto import pareto_front
 from bedchain.stage import complete
 from bedchain.tradeoff.settings import CELL_SIZES_M, FACTORIAL, ORDER, Own
 
@@ -55,20 +56,13 @@ def choose(table: pd.DataFrame, floor: float) -> dict[str, int]:
     valid = table[table["axis"].isin((FACTORIAL, ORDER)) & table[ERROR].notna()]
     if valid.empty:
         raise UserError("no chain could be validated: lengthen learning, or write frames more often")
-    front = pareto_front(valid)
+    front = pareto_front(valid, COST, ERROR)
     accurate = front.index[-1]
     limit = np.nanmax([FAST_FLOORS * floor, FAST_RATIO * front[ERROR].iloc[-1]])
     cheapest = front.loc[front[ERROR] <= limit, COST].iloc[0]
     fast = front.index[front[COST] <= SAME_COST * cheapest][-1]
     between = front.loc[fast:accurate]
     return {"fast": int(fast), "balanced": int(between.index[knee(between)]), "accurate": int(accurate)}
-
-
-def pareto_front(table: pd.DataFrame) -> pd.DataFrame:
-    """Rows that no other is both cheaper and more accurate than, by rising cost and so falling error."""
-    rising = table.sort_values([COST, ERROR], kind="stable")
-    best = rising[ERROR].cummin().shift(fill_value=np.inf)
-    return rising[rising[ERROR] < best]
 
 
 def knee(front: pd.DataFrame) -> int:
