@@ -5,10 +5,10 @@ from pathlib import Path
 
 import numpy as np
 
-from bedchain.cell_store import write_cells
-from bedchain.grid import Grid
 from bedchain.stage import LOG, stage
-from bedchain.trajectory import open_trajectory
+from bedchain.trajectory.cell_store import write_cells
+from bedchain.trajectory.grid import Grid
+from bedchain.trajectory.store import open_trajectory
 
 
 def assign_cells(

@@ -3,10 +3,11 @@
 
 from pathlib import Path
 
-from bedchain.audit import audit
-from bedchain.case import Case
-from bedchain.scene_numbers import scene_of
-from bedchain.stage import LOG, stage, write_csv
+from bedchain.case.scene import scene_of
+from bedchain.case.schema import Case
+from bedchain.files import write_csv
+from bedchain.stage import LOG, stage
+from bedchain.studies.audit import audit
 
 
 def audit_scene(case: Case, table: Path) -> None:

@@ -22,14 +22,15 @@ os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
 import numpy as np
 from scipy import sparse
 
-from bedchain import chains, dynamic, models, static, synthetic
-from bedchain.benchmark_table import machine, relative_rows, table
-from bedchain.counting import count_moves, count_pairs
-from bedchain.estimators import transition_matrix
-from bedchain.frames import Frames
-from bedchain.grid import Grid
-from bedchain.markov_chain import MarkovChain
-from bedchain.tracers import TracerChain
+from bedchain.chains import dynamic, propagate, registry, static
+from bedchain.chains.counting import count_moves, count_pairs
+from bedchain.chains.estimators import transition_matrix
+from bedchain.chains.markov_chain import MarkovChain
+from bedchain.chains.tracer_chain import TracerChain
+from bedchain.studies.cost.benchmark_table import machine, relative_rows, table
+from bedchain.trajectory import synthetic
+from bedchain.trajectory.frames import Frames
+from bedchain.trajectory.grid import Grid
 
 INTERVAL_S = 0.025
 SEED = 15013
@@ -123,8 +124,8 @@ def _run_model(name: str, what: str) -> Callable[[np.ndarray, Grid], Callable[[]
     def prepare(places: np.ndarray, grid: Grid) -> Callable[[], Any]:
         steps, frames = len(places) - 1, placed(places, grid)
         if what == "learn":
-            return lambda: models.learn(name, frames, grid)
-        chain, start = models.learn(name, frames, grid), frames.part(slice(0, 3))
+            return lambda: registry.learn(name, frames, grid)
+        chain, start = registry.learn(name, frames, grid), frames.part(slice(0, 3))
         if what == "curves":
             return lambda: chain.mixing(start, 0.135, 0.25, steps)
         return lambda: sum(cells for cells in chain.paths(start, steps, np.random.default_rng(SEED)))
@@ -140,7 +141,7 @@ def _run_chain(learn: Any, what: str) -> Callable[[np.ndarray, Grid], Callable[[
         if what == "curves":
             return lambda: chain.mixing(start, 0.135, 0.25, steps)
         states = chain.states(start)
-        return lambda: chains.simulate(chain.matrix, states, steps, np.random.default_rng(SEED))
+        return lambda: propagate.simulate(chain.matrix, states, steps, np.random.default_rng(SEED))
 
     return prepare
 

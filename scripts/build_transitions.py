@@ -4,10 +4,10 @@
 from pathlib import Path
 from typing import Any
 
-from bedchain import models
-from bedchain.cell_store import open_cells, window_frames
-from bedchain.frames import lag_frames
+from bedchain.chains import registry
 from bedchain.stage import LOG, stage
+from bedchain.trajectory.cell_store import open_cells, window_frames
+from bedchain.trajectory.frames import lag_frames
 
 
 def build_transitions(
@@ -42,8 +42,8 @@ def build_transitions(
     store = open_cells(cells)
     frames = window_frames(trajectory, metadata, store, start_s, end_s)
     lag = lag_frames(lag_s, frames.interval_s)
-    chain = models.learn(model, frames, store.grid, lag, estimator, **(options or {}))
-    models.save(chain, transitions)
+    chain = registry.learn(model, frames, store.grid, lag, estimator, **(options or {}))
+    registry.save(chain, transitions)
     for name, value in chain.report.items():
         LOG.info("%s chain, %s: %.6g", model, name, value)
 

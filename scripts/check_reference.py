@@ -14,10 +14,10 @@ from pathlib import Path
 import numpy as np
 import pandas as pd
 
-from bedchain import archive
 from bedchain.errors import UserError, report_user_errors
-from bedchain.packing import levels_of, middle_of, read_levels
-from bedchain.trajectory import open_trajectory
+from bedchain.trajectory import archive
+from bedchain.trajectory.packed_positions import levels_of, middle_of, read_levels
+from bedchain.trajectory.store import open_trajectory
 
 
 def check_reference(reference: Path, trajectory: Path, metadata: Path) -> pd.DataFrame:

@@ -7,14 +7,25 @@ from pathlib import Path
 import numpy as np
 import pandas as pd
 
-from bedchain import comparison, noise
-from bedchain.cell_store import open_cells, window_frames
-from bedchain.distribution import observed_shares
+from bedchain.comparison.curves import curve_table, curves_of
+from bedchain.comparison.metrics import (
+    batch_metrics,
+    bed_metrics,
+    dem_metrics,
+    floor_metrics,
+    metric,
+    model_metrics,
+    noise_metrics,
+    report_metrics,
+)
+from bedchain.dem.series import read_series
 from bedchain.errors import UserError
-from bedchain.frames import lag_frames
-from bedchain.mixing import remaining_from_positions, sides
-from bedchain.stage import LOG, stage, write_csv
-from bedchain.storage import read_arrays
+from bedchain.files import read_arrays, write_csv
+from bedchain.measures.batch import observed_shares
+from bedchain.measures.mixing import remaining_from_positions, sides
+from bedchain.stage import LOG, stage
+from bedchain.trajectory.cell_store import open_cells, window_frames
+from bedchain.trajectory.frames import lag_frames
 
 
 def compare_mixing(
@@ -53,15 +64,15 @@ def compare_mixing(
     dem = remaining_from_positions(frames.x_m, frames.z_m, split_x_m, split_z_m)
     places = zip(frames.x_m, frames.z_m, strict=True)
     on_side = np.array([sides(x, z, split_x_m, split_z_m).mean(axis=1) for x, z in places])
-    curves = [comparison.curve_table(frames.times_s, "dem", dem)]
-    rows = comparison.bed_metrics(comparison.read_series(bed_series), weight_Pa, bed_start_s, bed_end_s)
-    rows += [comparison.metric("particles", "dem", frames.cells.shape[1])]
-    rows += comparison.dem_metrics(on_side, dem)
+    curves = [curve_table(frames.times_s, "dem", dem)]
+    rows = bed_metrics(read_series(bed_series), weight_Pa, bed_start_s, bed_end_s)
+    rows += [metric("particles", "dem", frames.cells.shape[1])]
+    rows += dem_metrics(on_side, dem)
     curves += [pd.read_csv(path) for path in repeats]
-    further = [noise.curves_of(table, f"dem_{at}", len(dem)) for at, table in enumerate(curves[1:], 1)]
+    further = [curves_of(table, f"dem_{at}", len(dem)) for at, table in enumerate(curves[1:], 1)]
     realisations = np.stack([dem, *further])
     if further:
-        rows += noise.floor_metrics(realisations)
+        rows += floor_metrics(realisations)
     for model, path in chains.items():
         chain = read_arrays(path)
         observed = observed_shares(store, chain["moments_s"], start_s, batch_height_m)
@@ -73,12 +84,12 @@ def compare_mixing(
             (f"{model}_monte_carlo", "_monte_carlo", None),
         ):
             remaining, share = chain[f"remaining{how}"], chain[f"batch_share{how}"]
-            curves.append(comparison.curve_table(chain["times_s"], source, remaining))
-            rows += comparison.model_metrics(source, remaining, dem[::lag], replicates)
+            curves.append(curve_table(chain["times_s"], source, remaining))
+            rows += model_metrics(source, remaining, dem[::lag], replicates)
             if further:
-                rows += noise.noise_metrics(source, remaining, realisations[:, ::lag])
-            rows += comparison.batch_metrics(source, chain["moments_s"], share, observed)
-        rows += comparison.report_metrics(model, str(chain["report"]))
+                rows += noise_metrics(source, remaining, realisations[:, ::lag])
+            rows += batch_metrics(source, chain["moments_s"], share, observed)
+        rows += report_metrics(model, str(chain["report"]))
     table = pd.DataFrame(rows)
     write_csv(pd.concat(curves, ignore_index=True), mixing)
     write_csv(table, metrics)

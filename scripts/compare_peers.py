@@ -14,10 +14,10 @@ import sys
 from pathlib import Path
 
 from bedchain.errors import report_user_errors
-from bedchain.peers.plots import draw
-from bedchain.peers.study import all_peers, compare
-from bedchain.peers.table import markdown, ratios, summary
-from bedchain.stage import complete, write_csv
+from bedchain.files import complete, write_csv
+from bedchain.studies.peers.plots import draw
+from bedchain.studies.peers.study import all_peers, compare
+from bedchain.studies.peers.table import markdown, ratios, summary
 
 SOLVER = Path("results/bin/bedFoam")
 FOLDER = Path("results/peers")

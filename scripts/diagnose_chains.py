@@ -7,11 +7,13 @@ from typing import Any
 
 import numpy as np
 
-from bedchain import models
-from bedchain.blocks import block_length
-from bedchain.cell_store import frames_up_to, open_cells, window_frames
-from bedchain.counting import count_moves
-from bedchain.diagnosis import (
+from bedchain.chains import registry
+from bedchain.chains.chain import Chain
+from bedchain.chains.counting import count_moves
+from bedchain.chains.estimators import visited_density
+from bedchain.chains.markov_chain import MarkovChain
+from bedchain.chains.passage import top_row
+from bedchain.comparison.diagnostics import (
     Row,
     arrival_row,
     dispersion_rows,
@@ -21,16 +23,16 @@ from bedchain.diagnosis import (
     table,
     time_rows,
 )
-from bedchain.diagnostics import total_variation
-from bedchain.estimators import visited_density
-from bedchain.frames import Frames, lag_frames
-from bedchain.grid import Grid
-from bedchain.markov_chain import MarkovChain
-from bedchain.markov_check import check_model, counted_rows, doubled_lags
-from bedchain.mixing import marked_histogram, sides
-from bedchain.passage import top_row
-from bedchain.propagation import count_sides
-from bedchain.stage import LOG, stage, write_csv
+from bedchain.comparison.forecasts import count_sides
+from bedchain.comparison.markov_test import check_model, counted_rows, doubled_lags
+from bedchain.files import write_csv
+from bedchain.measures.batch import total_variation
+from bedchain.measures.mixing import marked_histogram, sides
+from bedchain.stage import LOG, stage
+from bedchain.trajectory.cell_store import frames_up_to, open_cells, window_frames
+from bedchain.trajectory.frames import Frames, lag_frames
+from bedchain.trajectory.grid import Grid
+from bedchain.uncertainty.bands import block_length
 
 # the top of the bed, for passages from its bottom: reached by this share of the particles at a time
 TOP_SHARE = 0.05
@@ -75,7 +77,7 @@ def diagnose_chains(
         Settings of each model only.
     """
     store = open_cells(cells)
-    chains = {name: models.load(path) for name, path in transitions.items()}
+    chains = {name: registry.load(path) for name, path in transitions.items()}
     with_matrix = {name: chain for name, chain in chains.items() if isinstance(chain, MarkovChain)}
     if absent := [name for name in chains if name not in with_matrix]:
         LOG.info("no transition matrix, so no timescales and no consistency: %s", ", ".join(absent))
@@ -134,7 +136,7 @@ def in_cells(times_s: np.ndarray, cells: np.ndarray, grid: Grid) -> Frames:
 
 
 def index_rows(
-    chains: dict[str, models.Chain], start: Frames, window: Frames, splits: tuple[float, float], lag: int,
+    chains: dict[str, Chain], start: Frames, window: Frames, splits: tuple[float, float], lag: int,
     random: Iterator[np.random.Generator],
 ) -> list[Row]:  # fmt: skip
     """Lacey's index over the comparison window, by the DEM and by as many particles of each chain.

@@ -7,15 +7,16 @@ from typing import Any
 import numpy as np
 import pandas as pd
 
-from bedchain import models
-from bedchain.averaging import spreading
-from bedchain.comparison import curve_errors
-from bedchain.frames import Frames, lag_frames, window
-from bedchain.grid import Grid
-from bedchain.mixing import GROUPS
-from bedchain.noise import curves_of, noise_floor
-from bedchain.stage import LOG, stage, write_csv
-from bedchain.trajectory import open_trajectory
+from bedchain.chains import registry
+from bedchain.comparison.curves import curve_errors, curves_of
+from bedchain.files import write_csv
+from bedchain.measures.mixing import GROUPS
+from bedchain.measures.numerical_dispersion import spreading
+from bedchain.stage import LOG, stage
+from bedchain.trajectory.frames import Frames, lag_frames, window
+from bedchain.trajectory.grid import Grid
+from bedchain.trajectory.store import open_trajectory
+from bedchain.uncertainty.noise_floor import noise_floor
 
 AXES = ("x", "z")
 # the steps that a chain has to know of what came before: the dynamic one asks for one
@@ -79,7 +80,7 @@ def discuss_errors(
             for name in names:
                 coarser = grid.n_cells <= own_grid.n_cells
                 if name == names[0] or own_grid == grid or (own_lag == lag and coarser):
-                    chain = models.learn(name, known, grid, lag, estimator)
+                    chain = registry.learn(name, known, grid, lag, estimator)
                     remaining = chain.mixing(start, split_x_m, split_z_m, steps)
                     found += error_rows(name, grid, chain.lag_s, remaining, curves.mean(axis=0)[::lag])
         LOG.info("%d x %d cells of %.3g m", grid.columns, grid.rows, cell_size(grid))

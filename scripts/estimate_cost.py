@@ -6,12 +6,13 @@ from pathlib import Path
 
 import pandas as pd
 
-from bedchain.case import Case
-from bedchain.estimate import predicted
-from bedchain.fidelity import read_presets
-from bedchain.outcome import FACTOR_AIM, compared, happened, outside
-from bedchain.rates import bed_of, calibrate
-from bedchain.stage import LOG, complete, stage, write_csv
+from bedchain.case.presets import read_presets
+from bedchain.case.schema import Case
+from bedchain.files import complete, write_csv
+from bedchain.stage import LOG, stage
+from bedchain.studies.cost.actual import FACTOR_AIM, compared, happened, outside
+from bedchain.studies.cost.estimate import predicted
+from bedchain.studies.cost.machine_speed import bed_of, calibrate
 
 UNITS = {"wall_s": "s", "memory_mb": "MB", "disk_mb": "MB on disk", "error_floors": "noise floors"}
 SHOWN = {

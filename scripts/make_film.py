@@ -12,12 +12,13 @@ from matplotlib.axes import Axes
 from matplotlib.image import AxesImage
 from tqdm import tqdm
 
-from bedchain import models
-from bedchain.canvas import Canvas, in_their_cells, voidages
-from bedchain.cell_store import frames_up_to, open_cells, window_frames
-from bedchain.figures import close_frame, figure_style
-from bedchain.frames import lag_frames
-from bedchain.stage import LOG, complete, stage
+from bedchain.chains import registry
+from bedchain.figures.film import Canvas, in_their_cells, voidages
+from bedchain.figures.style import close_frame, figure_style
+from bedchain.files import complete
+from bedchain.stage import LOG, stage
+from bedchain.trajectory.cell_store import frames_up_to, open_cells, window_frames
+from bedchain.trajectory.frames import lag_frames
 
 FRAMES_PER_SECOND = 20
 # of particles that change from frame to frame: 4 MB for 10 s
@@ -56,7 +57,7 @@ def make_film(
     progress : bool
         Show a bar with the time left.
     """
-    store, chain = open_cells(cells), models.load(transitions)
+    store, chain = open_cells(cells), registry.load(transitions)
     frames = window_frames(trajectory, metadata, store, start_s, end_s)
     lag = lag_frames(chain.lag_s, frames.interval_s)
     start = frames_up_to(trajectory, metadata, store, start_s, lag)

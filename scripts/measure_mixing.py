@@ -5,11 +5,12 @@ from pathlib import Path
 
 import numpy as np
 
-from bedchain.comparison import curve_table
-from bedchain.frames import window
-from bedchain.mixing import remaining_from_positions
-from bedchain.stage import LOG, stage, write_csv
-from bedchain.trajectory import open_trajectory
+from bedchain.comparison.curves import curve_table
+from bedchain.files import write_csv
+from bedchain.measures.mixing import remaining_from_positions
+from bedchain.stage import LOG, stage
+from bedchain.trajectory.frames import window
+from bedchain.trajectory.store import open_trajectory
 
 
 def measure_mixing(

@@ -16,19 +16,19 @@ from typing import Any
 import numpy as np
 import pandas as pd
 
-from bedchain import archive
-from bedchain.case import SCHEMA_FILE, Case, Schema, load_case, load_schema, schema_keys
+from bedchain.case.load import load_case
+from bedchain.case.parameters import solver_parameters
+from bedchain.case.schema import SCHEMA_FILE, Case, Schema, load_schema, schema_keys
+from bedchain.dem.gas_field import read_gas_field
+from bedchain.dem.repeats import kick_seed, repeat_folder
+from bedchain.dem.segments import read_parameters
 from bedchain.errors import UserError, report_user_errors
-from bedchain.frames import window
-from bedchain.gas_field import read_gas_field
-from bedchain.packing import levels_of, write_levels
-from bedchain.parameters import solver_parameters
+from bedchain.files import complete, whole_folder, write_arrays, write_csv
 from bedchain.provenance import debian_packages, git_state, machine, python_packages
-from bedchain.repeats import kick_seed, repeat_folder
-from bedchain.segments import read_parameters, whole_folder
-from bedchain.stage import complete, write_csv
-from bedchain.storage import write_arrays
-from bedchain.trajectory import open_trajectory, read_manifest
+from bedchain.trajectory import archive
+from bedchain.trajectory.frames import window
+from bedchain.trajectory.packed_positions import levels_of, write_levels
+from bedchain.trajectory.store import open_trajectory, read_manifest
 
 # half a millimetre: in the short bed 1.15 bytes a particle and frame (1 mm: 0.92, 0.25 mm: 1.38). Velocities
 # are differences over 50 ms, 59 mm/s off those of the moment; rounding adds 4 mm/s (1 mm: 8, 0.25 mm: 2)

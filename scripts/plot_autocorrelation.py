@@ -9,9 +9,10 @@ from matplotlib import pyplot as plt
 from matplotlib.axes import Axes
 
 from bedchain.errors import UserError
-from bedchain.figures import DOUBLE_COLUMN_IN, LINE_COLOUR, figure_style, save_figure
-from bedchain.model_styles import BASELINE, label, model_styles
-from bedchain.stage import stage, write_csv
+from bedchain.figures.model_styles import BASELINE, label, model_styles
+from bedchain.figures.style import DOUBLE_COLUMN_IN, LINE_COLOUR, figure_style, save_figure
+from bedchain.files import write_csv
+from bedchain.stage import stage
 
 ROWS = {"x": "along x", "z": "along z"}
 

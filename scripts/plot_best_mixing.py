@@ -8,9 +8,10 @@ from matplotlib import pyplot as plt
 from matplotlib.axes import Axes
 
 from bedchain.errors import UserError
-from bedchain.figures import DOUBLE_COLUMN_IN, figure_style, save_figure
-from bedchain.model_styles import BASELINE, label, model_styles
-from bedchain.stage import stage, write_csv
+from bedchain.figures.model_styles import BASELINE, label, model_styles
+from bedchain.figures.style import DOUBLE_COLUMN_IN, figure_style, save_figure
+from bedchain.files import write_csv
+from bedchain.stage import stage
 
 PANELS = {"left": "left half", "right": "right half", "low": "lower part", "up": "upper part"}
 REPEAT, MONTE_CARLO = "repeat_", "_monte_carlo"

@@ -9,11 +9,12 @@ from matplotlib import pyplot as plt
 from matplotlib.axes import Axes
 from matplotlib.patches import Rectangle
 
-from bedchain.cell_store import frame_at, open_cells
-from bedchain.figures import SINGLE_COLUMN_IN, close_frame, draw_particles, figure_style, save_figure
-from bedchain.grid import Grid
-from bedchain.stage import stage, write_csv
-from bedchain.trajectory import open_trajectory
+from bedchain.figures.style import SINGLE_COLUMN_IN, close_frame, draw_particles, figure_style, save_figure
+from bedchain.files import write_csv
+from bedchain.stage import stage
+from bedchain.trajectory.cell_store import frame_at, open_cells
+from bedchain.trajectory.grid import Grid
+from bedchain.trajectory.store import open_trajectory
 
 # more cells than these cannot carry a number that can be read
 CORNER_COLUMNS, CORNER_ROWS = 5, 10

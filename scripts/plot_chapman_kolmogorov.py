@@ -11,8 +11,9 @@ from matplotlib.patches import Patch
 from matplotlib.ticker import FuncFormatter, MaxNLocator
 
 from bedchain.errors import UserError
-from bedchain.figures import DOUBLE_COLUMN_IN, figure_style, save_figure
-from bedchain.stage import stage, write_csv
+from bedchain.figures.style import DOUBLE_COLUMN_IN, figure_style, save_figure
+from bedchain.files import write_csv
+from bedchain.stage import stage
 
 GROUPS = {"left": "left half", "right": "right half", "low": "lower part", "up": "upper part"}
 CURVES = ("remaining_propagated", "remaining_counted")

@@ -8,8 +8,9 @@ from matplotlib import pyplot as plt
 from matplotlib.axes import Axes
 
 from bedchain.errors import UserError
-from bedchain.figures import DOUBLE_COLUMN_IN, figure_style, save_figure
-from bedchain.stage import stage, write_csv
+from bedchain.figures.style import DOUBLE_COLUMN_IN, figure_style, save_figure
+from bedchain.files import write_csv
+from bedchain.stage import stage
 
 KINDS = {
     "simulate": ("{model}: simulate", "s", True),

@@ -10,13 +10,13 @@ from matplotlib.axes import Axes
 from matplotlib.collections import PolyCollection, QuadMesh
 from matplotlib.colors import LinearSegmentedColormap, Normalize
 
-from bedchain.cell_store import open_cells
-from bedchain.diagnostics import total_variation
 from bedchain.errors import UserError
-from bedchain.figures import DOUBLE_COLUMN_IN, close_frame, figure_style, save_figure, shown_height
-from bedchain.grid import Grid
-from bedchain.stage import LOG, stage, write_csv
-from bedchain.storage import read_arrays
+from bedchain.figures.style import DOUBLE_COLUMN_IN, close_frame, figure_style, save_figure, shown_height
+from bedchain.files import read_arrays, write_csv
+from bedchain.measures.batch import total_variation
+from bedchain.stage import LOG, stage
+from bedchain.trajectory.cell_store import open_cells
+from bedchain.trajectory.grid import Grid
 
 # two hues that colour-blind readers tell apart, white where both chains agree
 COLOURS = LinearSegmentedColormap.from_list(

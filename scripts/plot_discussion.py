@@ -11,8 +11,9 @@ from matplotlib.axes import Axes
 from matplotlib.ticker import LogLocator, NullLocator
 
 from bedchain.errors import UserError
-from bedchain.figures import DOUBLE_COLUMN_IN, figure_style, save_figure
-from bedchain.stage import stage, write_csv
+from bedchain.figures.style import DOUBLE_COLUMN_IN, figure_style, save_figure
+from bedchain.files import write_csv
+from bedchain.stage import stage
 
 DIRECTIONS = {"left and right": ["left", "right"], "low and up": ["low", "up"]}
 STYLES = {"left and right": ("-", "o"), "low and up": ((0, (4, 1.5)), "s")}

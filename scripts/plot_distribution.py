@@ -8,10 +8,7 @@ import pandas as pd
 from matplotlib import pyplot as plt
 from matplotlib.colors import PowerNorm
 
-from bedchain.cell_store import open_cells
-from bedchain.diagnostics import total_variation
-from bedchain.distribution import observed_shares
-from bedchain.figures import (
+from bedchain.figures.style import (
     DOUBLE_COLUMN_IN,
     close_frame,
     draw_cells,
@@ -20,8 +17,11 @@ from bedchain.figures import (
     save_figure,
     shown_height,
 )
-from bedchain.grid import Grid
-from bedchain.stage import LOG, stage, write_csv
+from bedchain.files import write_csv
+from bedchain.measures.batch import observed_shares, total_variation
+from bedchain.stage import LOG, stage
+from bedchain.trajectory.cell_store import open_cells
+from bedchain.trajectory.grid import Grid
 
 # the square root shows the thin parts of the batch beside its dense rest
 GAMMA = 0.5

@@ -9,11 +9,11 @@ from matplotlib import pyplot as plt
 from matplotlib.axes import Axes
 from matplotlib.patches import Patch
 
-from bedchain.bootstrap import band
 from bedchain.errors import UserError
-from bedchain.figures import DOUBLE_COLUMN_IN, figure_style, save_figure
-from bedchain.stage import CSV_DIGITS, stage, write_csv
-from bedchain.storage import read_arrays
+from bedchain.figures.style import DOUBLE_COLUMN_IN, figure_style, save_figure
+from bedchain.files import CSV_DIGITS, read_arrays, write_csv
+from bedchain.stage import stage
+from bedchain.uncertainty.bands import band
 
 PANELS = {
     "radial": {"left": "left half", "right": "right half"},

@@ -11,9 +11,10 @@ from matplotlib.lines import Line2D
 from matplotlib.ticker import NullFormatter
 
 from bedchain.errors import UserError
-from bedchain.figures import DOUBLE_COLUMN_IN, LINE_COLOUR, figure_style, save_figure
-from bedchain.model_styles import BASELINE, ModelStyle, label, model_styles
-from bedchain.stage import stage, write_csv
+from bedchain.figures.model_styles import BASELINE, ModelStyle, label, model_styles
+from bedchain.figures.style import DOUBLE_COLUMN_IN, LINE_COLOUR, figure_style, save_figure
+from bedchain.files import write_csv
+from bedchain.stage import stage
 
 WINDOW = "starts"
 PANELS = {"radial": "test, left / right", "axial": "test, low / up"}

@@ -13,11 +13,12 @@ from matplotlib.axes import Axes
 from matplotlib.cm import ScalarMappable
 from matplotlib.colors import Normalize
 
-from bedchain.cell_store import frame_at
-from bedchain.figures import SINGLE_COLUMN_IN, close_frame, figure_style, save_figure
-from bedchain.gas_field import GasField, gas_near
-from bedchain.stage import LOG, stage, write_csv
-from bedchain.trajectory import open_trajectory, read_manifest
+from bedchain.dem.gas_field import GasField, gas_near
+from bedchain.figures.style import SINGLE_COLUMN_IN, close_frame, figure_style, save_figure
+from bedchain.files import write_csv
+from bedchain.stage import LOG, stage
+from bedchain.trajectory.cell_store import frame_at
+from bedchain.trajectory.store import open_trajectory, read_manifest
 
 GAS_COLOUR_MAP = "Blues_r"
 # freeboard without particles is not shown, but for this share of the bed's height shown

@@ -8,12 +8,14 @@ import pandas as pd
 from matplotlib import pyplot as plt
 from matplotlib.axes import Axes
 
-from bedchain.comparison import read_series
-from bedchain.figures import DOUBLE_COLUMN_IN, figure_style, save_figure
-from bedchain.frames import window
-from bedchain.stage import LOG, stage, write_csv
-from bedchain.stationarity import drift_table, profiles
-from bedchain.trajectory import open_trajectory
+from bedchain.dem.series import read_series
+from bedchain.figures.style import DOUBLE_COLUMN_IN, figure_style, save_figure
+from bedchain.files import write_csv
+from bedchain.measures.voidage import profiles
+from bedchain.stage import LOG, stage
+from bedchain.trajectory.frames import window
+from bedchain.trajectory.store import open_trajectory
+from bedchain.uncertainty.stationarity import drift_table
 
 TITLES = {
     "pressure_drop": "pressure drop [Pa]",

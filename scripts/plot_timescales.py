@@ -11,8 +11,9 @@ from matplotlib.lines import Line2D
 from matplotlib.ticker import FuncFormatter, NullFormatter
 
 from bedchain.errors import UserError
-from bedchain.figures import DOUBLE_COLUMN_IN, LINE_COLOUR, figure_style, save_figure
-from bedchain.stage import stage, write_csv
+from bedchain.figures.style import DOUBLE_COLUMN_IN, LINE_COLOUR, figure_style, save_figure
+from bedchain.files import write_csv
+from bedchain.stage import stage
 
 # a pair of complex eigenvalues has one timescale; the same number twice up to the digits of the table
 PAIR = 1e-6

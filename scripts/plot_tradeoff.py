@@ -11,8 +11,9 @@ from matplotlib.axes import Axes
 from matplotlib.ticker import LogLocator, NullFormatter, NullLocator
 
 from bedchain.errors import UserError
-from bedchain.figures import DOUBLE_COLUMN_IN, figure_style, save_figure
-from bedchain.stage import stage, write_csv
+from bedchain.figures.style import DOUBLE_COLUMN_IN, figure_style, save_figure
+from bedchain.files import write_csv
+from bedchain.stage import stage
 
 FACTORIAL, ORDER = "cells and lag", "order"
 POINTS = ("window", "window start", "cell shape", "estimator", ORDER)

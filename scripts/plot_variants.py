@@ -12,9 +12,10 @@ from matplotlib.axis import Axis
 from matplotlib.ticker import LogLocator, NullLocator
 
 from bedchain.errors import UserError
-from bedchain.figures import DOUBLE_COLUMN_IN, figure_style, save_figure
-from bedchain.pareto import pareto_front
-from bedchain.stage import stage, write_csv
+from bedchain.figures.style import DOUBLE_COLUMN_IN, figure_style, save_figure
+from bedchain.files import write_csv
+from bedchain.stage import stage
+from bedchain.studies.pareto import pareto_front
 
 # heads of the columns; the first two have no sign
 TITLES = {

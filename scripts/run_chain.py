@@ -7,16 +7,15 @@ from typing import Any
 
 import numpy as np
 
-from bedchain import models
-from bedchain.blocks import block_length
-from bedchain.bootstrap import block_chains
-from bedchain.cell_store import frame_at, frames_up_to, open_cells, window_frames
-from bedchain.distribution import batch_of
+from bedchain.chains import registry
 from bedchain.errors import UserError
-from bedchain.frames import lag_frames, whole_steps, window
-from bedchain.mixing import GROUPS
+from bedchain.files import write_arrays
+from bedchain.measures.batch import batch_of
+from bedchain.measures.mixing import GROUPS
 from bedchain.stage import LOG, stage
-from bedchain.storage import write_arrays
+from bedchain.trajectory.cell_store import frame_at, frames_up_to, open_cells, window_frames
+from bedchain.trajectory.frames import lag_frames, whole_steps, window
+from bedchain.uncertainty.bands import block_chains, block_length
 
 # a moment lies on a step up to round-off of the division
 STEP_TOLERANCE = 1e-6
@@ -62,7 +61,7 @@ def run_chain(
     DataError, UserError
         The window or a moment is no whole number of steps.
     """
-    store, model = open_cells(cells), models.load(transitions)
+    store, model = open_cells(cells), registry.load(transitions)
     lag = lag_frames(model.lag_s, float(np.diff(store.times_s).mean()))
     which = window(store.times_s, start_s, end_s)
     steps = whole_steps(which.stop - which.start, lag)
@@ -80,7 +79,7 @@ def run_chain(
             "remaining": model.mixing(start, *splits, steps),
             "remaining_monte_carlo": model.mixing(start, *splits, steps, for_mixing),
             "remaining_replicates": block_chains(
-                models.relearner(model.name, learned_from, store.grid, lag, estimator, **(options or {})),
+                registry.relearner(model.name, learned_from, store.grid, lag, estimator, **(options or {})),
                 lambda again: again.mixing(start, *splits, steps),
                 len(learned_from.times_s) - lag,
                 block_length(learned_from, split_x_m, lag),

@@ -19,28 +19,35 @@ from pathlib import Path
 
 import pandas as pd
 
-from bedchain import drum_run
-from bedchain.disk import require_disk
-from bedchain.errors import UserError, report_user_errors
-from bedchain.gas_case import GAS_CASE, GAS_PARTS, prepare_gas
-from bedchain.repeats import DECK, KICK_M_S, PERTURBED, kick_seed, perturb, repeat_folder, segment_that_ends
-from bedchain.segments import (
+from bedchain.dem import drum
+from bedchain.dem.disk import require_disk
+from bedchain.dem.gas_case import GAS_CASE, GAS_PARTS, prepare_gas
+from bedchain.dem.processes import Progress, on_ranks, run_deck, run_logged
+from bedchain.dem.repeats import (
+    DECK,
+    KICK_M_S,
+    PERTURBED,
+    kick_seed,
+    perturb,
+    repeat_folder,
+    segment_that_ends,
+)
+from bedchain.dem.segments import (
     RESTART,
     SETTLED,
     Run,
     Segment,
     check_frames,
-    exclusive,
     finished_segments,
     frame_columns,
     input_stamp,
     manifest,
     read_parameters,
-    whole_folder,
     write_record,
 )
-from bedchain.solver_process import Progress, on_ranks, run_deck, run_logged
-from bedchain.trajectory import read_manifest
+from bedchain.errors import UserError, report_user_errors
+from bedchain.files import exclusive, whole_folder
+from bedchain.trajectory.store import read_manifest
 
 SOLVER = Path("results/bin/bedFoam")
 DECKS = Path("liggghts_inputs")
@@ -50,8 +57,8 @@ BYTES_PER_PARTICLE = 500  # of LIGGGHTS's restart, with its contact history (480
 
 def input_files(folder: Path) -> list[Path]:
     """Every file that the run depends on, in a fixed order."""
-    if drum_run.turns(folder):
-        return drum_run.input_files(folder, DECKS)
+    if drum.turns(folder):
+        return drum.input_files(folder, DECKS)
     given = [folder / "parameters.lig", folder / "caseParameters", SOLVER]
     decks = [DECKS / "in.settle", DECKS / "in.fluidize", *sorted((DECKS / "include").glob("*.in"))]
     gas = sorted(file for part in GAS_PARTS for file in (GAS_CASE / part).rglob("*") if file.is_file())
@@ -68,7 +75,7 @@ def settle(run: Run) -> None:
     if (run.state / run.origin).exists():
         return
     print("run_dem: settling the particles without gas", flush=True)
-    name = drum_run.FILL if drum_run.turns(run.case) else "in.settle"
+    name = drum.FILL if drum.turns(run.case) else "in.settle"
     with whole_folder(run.state / run.origin) as part:
         variables = {"decks": DECKS, "parameters": run.case / "parameters.lig", "output": part}
         run_deck(DECKS / name, variables, part / "liggghts.log", run.ranks)
@@ -94,8 +101,8 @@ def run_segment(run: Run, index: int, steps: tuple[int, int]) -> Segment:
     step_s = float(parameters["dem_step"])
     name = f"segment_{index:04d}"
     previous = run.state / (f"segment_{index - 1:04d}" if index > 1 else run.origin)
-    if drum_run.turns(run.case):
-        return drum_run.run_segment(run, index, steps, previous, DECKS)
+    if drum.turns(run.case):
+        return drum.run_segment(run, index, steps, previous, DECKS)
     with whole_folder(run.state / name) as part:
         settings: dict[str, object] = {
             "ranks": run.ranks,
@@ -202,8 +209,8 @@ def advance(run: Run, segment_steps: int) -> None:
 def write_results(run: Run, segments: list[Segment]) -> None:
     """Write ``bed_series.csv`` and ``dem.json`` of the finished segments, moved into place when complete."""
     found = manifest(run, segments)
-    inside = "" if drum_run.turns(run.case) else "gas"
-    files = [run.state / segment.folder / inside / drum_run.SERIES for segment in segments]
+    inside = "" if drum.turns(run.case) else "gas"
+    files = [run.state / segment.folder / inside / drum.SERIES for segment in segments]
     series = pd.concat(map(pd.read_csv, files))
     part = run.results / "bed_series.csv.part"
     series[series["time_s"] <= run.end_step * float(str(found["dem_step_s"])) * (1 + 1e-9)].to_csv(

@@ -8,24 +8,24 @@ from typing import Any
 import numpy as np
 import pandas as pd
 
-from bedchain import models
-from bedchain.candidates import Candidate, candidates
-from bedchain.comparison import curve_table
+from bedchain.chains import registry
+from bedchain.comparison.curves import curve_table
 from bedchain.errors import UserError
-from bedchain.frames import lag_frames, window
-from bedchain.grid import Grid
-from bedchain.held_out import HeldOut, hold_out
-from bedchain.kept import only, stamp
-from bedchain.lagrangian import Statistics
-from bedchain.model_styles import BASELINE
-from bedchain.regrid import regrid
-from bedchain.runs import open_repeats, open_run
-from bedchain.score_rows import dem_rows, score_rows
-from bedchain.selection import Task, leading_to, named, select
-from bedchain.stage import LOG, stage, write_csv
-from bedchain.starts import memory
-from bedchain.storage import write_arrays
-from bedchain.trial import Trial, batch_shares, dem_statistics, try_out
+from bedchain.figures.model_styles import BASELINE
+from bedchain.files import write_arrays, write_csv
+from bedchain.measures.lagrangian import Statistics
+from bedchain.stage import LOG, stage
+from bedchain.studies.records import only, stamp
+from bedchain.studies.scores.candidates import Candidate, candidates
+from bedchain.studies.scores.held_out import HeldOut, hold_out
+from bedchain.studies.scores.rows import dem_rows, score_rows
+from bedchain.studies.scores.selection import Task, leading_to, named, select
+from bedchain.studies.scores.tested_chain import Trial, batch_shares, dem_statistics, try_out
+from bedchain.trajectory.frames import lag_frames, window
+from bedchain.trajectory.grid import Grid
+from bedchain.trajectory.realisations import open_repeats, open_run
+from bedchain.trajectory.regrid import regrid
+from bedchain.uncertainty.bands import memory
 
 COLUMNS = ["model", "cell_m", "lag_s", "options", "quantity", "time_s", "value", "ci_low", "ci_high",
            "noise_floor", "unit", "window"]  # fmt: skip
@@ -87,7 +87,7 @@ def score_models(
     splits, lag = (split_x_m, split_z_m), lag_frames(lag_s, run.interval_s)
     spacing = memory(run.frames(grid, which), split_x_m)
     task = Task(grid, splits, estimator, spacing, compared.stop - 1 - compared.start)
-    tried = candidates(models.LEARNERS, grid, lag, diameter_m) if tried is None else tried
+    tried = candidates(registry.LEARNERS, grid, lag, diameter_m) if tried is None else tried
     about = {"task": repr(task), "learning": learning, "comparison": comparison}
     kept = only(scores.parent / "candidates" / stamp([trajectory, metadata], about))
     table = select(tried, run, which, task, kept)

@@ -4,7 +4,7 @@
 #   validate  a case against its measured profiles       scores   all chains, chosen by validation, tested once
 #   estimate  what a case will cost, before it runs      stability solvers and chains at their extremes
 #   tradeoff  what accuracy costs, of chains and of simulated beds; the presets of `fidelity`
-from bedchain.tradeoff.bed_variants import variants_or_exit
+from bedchain.studies.tradeoff.bed_variants import variants_or_exit
 
 SCORE_PLOTS = ["fig_pareto", "fig5_best", "fig_autocorrelation", "fig_distribution_best"]
 
@@ -17,9 +17,7 @@ rule verify:
 
 rule verify_solver:
     input:
-        modules("case", "dumps", "errors", "figures", "gas_field", "parameters", "segments", "solver_process"),
-        modules("slab", "stage"),
-        source_files("scripts/bedchain/verification", "*.py"),
+        code("verify_solver"),
         schema="cases/case.schema.yaml",
         solver=SOLVER,
         decks=source_files("liggghts_inputs", "verify/in.*", "include/*.in"),
@@ -48,11 +46,8 @@ rule peers:
 # Alone on the machine, since it measures times. Its finished runs are kept in results/peers/<bed>/.
 rule compare_peers:
     input:
-        modules("case", "dumps", "errors", "figures", "gas_case", "parameters", "provenance", "segments"),
-        modules("solver_process", "stage"),
-        source_files("scripts/bedchain/peers", "*.py"),
-        source_files("scripts/bedchain/peers/inputs", "*"),
-        "scripts/bedchain/verification/particle_files.py",
+        code("compare_peers"),
+        source_files("scripts/bedchain/studies/peers/inputs", "*"),
         solver=SOLVER,
         decks=source_files("liggghts_inputs", "in.*", "include/*.in"),
         gas=source_files("openfoam_case", "0.orig/*", "constant/*", "system/*"),
@@ -83,11 +78,7 @@ rule stability:
 # What was tried is kept in results/stability/kept: a study that was stopped goes on.
 rule study_stability:
     input:
-        modules(
-            "diagnostics", "figures", "mixing", "models", "scene_numbers", "segments", "stage", "variants"
-        ),
-        source_files("scripts/bedchain/stability", "*.py"),
-        source_files("scripts/bedchain/verification", "*.py"),
+        code("study_stability"),
         schema="cases/case.schema.yaml",
         solver=SOLVER,
         decks=source_files("liggghts_inputs", "in.*", "include/*.in"),
@@ -116,7 +107,7 @@ rule validate:
 
 rule validate_bed:
     input:
-        modules("figures", "frames", "stage", "trajectory", "validation"),
+        code("validate_bed"),
         **TRAJECTORY,
         points=f"cases/{NAME}/measured.csv",
     output:
@@ -145,9 +136,7 @@ rule scores:
 
 rule score_models:
     input:
-        modules("candidates", "comparison", "errors", "frames", "grid", "held_out", "kept", "lagrangian"),
-        modules("model_styles", "models", "regrid", "runs", "score_rows", "selection", "stage", "starts"),
-        modules("storage", "trial"),
+        code("score_models"),
         **TRAJECTORY,
         # an archive keeps the repeats' curves, not their positions
         repeats=expand(f"{BED}/repeats/{{repeat}}/trajectory.npy", repeat=[] if REFERENCE else REPEATS),
@@ -174,7 +163,7 @@ rule score_models:
 
 rule plot_pareto:
     input:
-        modules("errors", "figures", "model_styles", "stage"),
+        code("plot_pareto"),
         scores=rules.score_models.output.scores,
         selection=rules.score_models.output.selection,
     output:
@@ -193,7 +182,7 @@ rule plot_pareto:
 
 rule plot_best_mixing:
     input:
-        modules("errors", "figures", "model_styles", "stage"),
+        code("plot_best_mixing"),
         mixing=rules.score_models.output.mixing,
         selection=rules.score_models.output.selection,
     output:
@@ -210,7 +199,7 @@ rule plot_best_mixing:
 
 rule plot_autocorrelation:
     input:
-        modules("errors", "figures", "model_styles", "stage"),
+        code("plot_autocorrelation"),
         lagrangian=rules.score_models.output.lagrangian,
     output:
         multiext(f"{FIGURES}/fig_autocorrelation", **FORMS),
@@ -239,7 +228,7 @@ rule estimate:
 # What it reads is no input of it: an estimate must not make what it estimates.
 rule estimate_cost:
     input:
-        modules("case", "estimate", "fidelity", "outcome", "rates", "stage"),
+        code("estimate_cost"),
     output:
         table=f"{RESULTS}/estimate.csv",
         text=f"{RESULTS}/estimate.txt",
@@ -275,23 +264,7 @@ rule tradeoff:
 # Alone on the machine, since it measures times.
 rule study_tradeoff:
     input:
-        modules("case", "candidates", "comparison", "dispersion", "distribution", "fidelity", "frames"),
-        modules(
-            "kept",
-            "models",
-            "noise",
-            "pareto",
-            "provenance",
-            "regrid",
-            "repeats",
-            "runs",
-            "scores",
-            "selection",
-            "stage",
-            "starts",
-        ),
-        modules("trajectory", "trial", "variants"),
-        source_files("scripts/bedchain/tradeoff", "*.py"),
+        code("study_tradeoff"),
         **TRAJECTORY,
         case=ancient(f"cases/{NAME}/case.yaml"),
         bed_series=RUN["bed_series"],
@@ -326,7 +299,7 @@ rule study_tradeoff:
 
 rule plot_tradeoff:
     input:
-        modules("errors", "figures", "stage"),
+        code("plot_tradeoff"),
         tradeoff=rules.study_tradeoff.output.table,
     output:
         multiext(f"{FIGURES}/fig_tradeoff", **FORMS),
@@ -342,7 +315,7 @@ rule plot_tradeoff:
 
 rule plot_variants:
     input:
-        modules("errors", "figures", "pareto", "stage"),
+        code("plot_variants"),
         tradeoff=rules.study_tradeoff.output.table,
     output:
         multiext(f"{FIGURES}/fig_tradeoff_dem", **FORMS),

@@ -17,33 +17,33 @@ from pathlib import Path
 import pandas as pd
 
 from bedchain.errors import UserError, report_user_errors
-from bedchain.stability.bed_settings import bed_settings
-from bedchain.stability.chain_settings import chain_settings
-from bedchain.stability.maps import draw_maps
-from bedchain.stability.settings import Setting, chosen, is_of_chains
-from bedchain.stability.study import LONGEST_S, run_study
-from bedchain.stability.verdict import FAULTS
-from bedchain.stage import write_csv
-from bedchain.workflow import modules, source_files
+from bedchain.files import write_csv
+from bedchain.studies.stability.bed_settings import bed_settings
+from bedchain.studies.stability.chain_settings import chain_settings
+from bedchain.studies.stability.maps import draw_maps
+from bedchain.studies.stability.settings import Setting, chosen, is_of_chains
+from bedchain.studies.stability.study import LONGEST_S, run_study
+from bedchain.studies.stability.verdict import FAULTS
+from bedchain.workflow import files_behind, source_files
 
 SOLVER = Path("results/bin/bedFoam")
 FOLDER = Path("results/stability")
-STABILITY = Path("scripts/bedchain/stability")
+STABILITY = Path("scripts/bedchain/studies/stability")
 
 
 def sources(settings: list[Setting]) -> dict[str, list[Path]]:
-    """Files that the verdicts of each group depend on: the solvers' or the chains', and the judge's."""
-    verification = Path("scripts/bedchain/verification")
-    judge = [STABILITY / "verdict.py", verification / "rows.py"]
+    """Files that the verdicts of each group depend on: the solvers' or the chains'."""
     decks = source_files("liggghts_inputs", "in.settle", "in.fluidize", "in.contact", "include/*.in")
     gas = source_files("openfoam_case", "0.orig/*", "constant/*", "system/*")
-    runs = [STABILITY / "bed_runs.py", STABILITY / "collisions.py", verification / "bench.py"]
-    beds = [SOLVER, "cases/case.schema.yaml", *decks, *gas, *modules("variants", "segments"), *runs]
-    own = [STABILITY / f"{name}.py" for name in ("chain_runs", "chain_settings", "walkers")]
-    chains = [*modules("models", "mixing", "diagnostics"), *own]
+    beds = [SOLVER, "cases/case.schema.yaml", *decks, *gas]
+    for name in ("bed_runs", "collisions"):
+        beds += [str(STABILITY / f"{name}.py"), *files_behind(STABILITY / f"{name}.py")]
+    chains = []
+    for name in ("chain_runs", "chain_settings"):
+        chains += [str(STABILITY / f"{name}.py"), *files_behind(STABILITY / f"{name}.py")]
     files = {True: chains, False: beds}
     return {
-        group: [*judge, *map(Path, files[is_of_chains(group)])]
+        group: sorted(set(map(Path, files[is_of_chains(group)])))
         for group in {setting.group for setting in settings}
     }
 

@@ -13,22 +13,25 @@ from pathlib import Path
 import numpy as np
 import pandas as pd
 
-from bedchain.case import Case, load_case
+from bedchain.case.load import load_case
+from bedchain.case.schema import Case
+from bedchain.dem.repeats import repeat_folder
 from bedchain.errors import UserError
-from bedchain.frames import lag_frames, window
-from bedchain.kept import only, stamp
-from bedchain.noise import ROUND_OFF
+from bedchain.files import write_csv
 from bedchain.provenance import machine
-from bedchain.repeats import repeat_folder
-from bedchain.runs import Run, open_repeats, open_run
-from bedchain.selection import Task
-from bedchain.stage import LOG, stage, write_csv
-from bedchain.starts import Start, memory, starts_in
-from bedchain.tradeoff import bed_half, chain_half, presets
-from bedchain.tradeoff.bed_variants import bed_variants
-from bedchain.tradeoff.observables import Reference, all_columns
-from bedchain.tradeoff.reference import compared, own_grid, realisations, splits_of
-from bedchain.tradeoff.settings import Own
+from bedchain.stage import LOG, stage
+from bedchain.studies.records import only, stamp
+from bedchain.studies.scores.marked_starts import Start, starts_in
+from bedchain.studies.scores.selection import Task
+from bedchain.studies.tradeoff import measured_chains, presets, simulated_beds
+from bedchain.studies.tradeoff.bed_variants import bed_variants
+from bedchain.studies.tradeoff.chain_settings import Own
+from bedchain.studies.tradeoff.observables import Reference, all_columns
+from bedchain.studies.tradeoff.reference import compared, own_grid, realisations, splits_of
+from bedchain.trajectory.frames import lag_frames, window
+from bedchain.trajectory.realisations import Run, open_repeats, open_run
+from bedchain.uncertainty.bands import memory
+from bedchain.uncertainty.noise_floor import ROUND_OFF
 
 LABELS = ["half", "axis", "variant", "changed", "model", "estimator", "cell_width_m", "cell_height_m",
           "lag_s", "learning_start_s", "learning_end_s", "tracers"]  # fmt: skip
@@ -61,14 +64,14 @@ def study_tradeoff(case_file: Path, folder: Path, variants: list[str], at_once: 
         raise UserError(f"there is no variant {', '.join(unknown)}: take of {', '.join(known)}")
     bench, files = opened(case, folder)
     kept = only(folder / "tradeoff" / "settings" / stamp(files, {"case": case}))
-    table = pd.DataFrame(chain_half.measure_all(bench, kept))
+    table = pd.DataFrame(measured_chains.measure_all(bench, kept))
     floors = bench.reference.floors()
     floor = floors["mixing"] if floors["mixing"] > ROUND_OFF else np.nan
     chosen = presets.choose(table, floor)
     table["preset"] = [
         " ".join(name for name, row in chosen.items() if row == at) for at in table.index
     ]  # fmt: skip
-    beds = bed_half.simulate_all(
+    beds = simulated_beds.simulate_all(
         case_file, [known[name] for name in variants], folder / "tradeoff", bench.reference, at_once
     )
     table = pd.concat([table, pd.DataFrame(beds)], ignore_index=True) if beds else table
@@ -83,7 +86,7 @@ def study_tradeoff(case_file: Path, folder: Path, variants: list[str], at_once: 
         LOG.info("%s: %s, %.3g s", name, table.loc[row, "variant"], table.loc[row, "cost_s"])
 
 
-def opened(case: Case, folder: Path) -> tuple[chain_half.Bench, list[Path]]:
+def opened(case: Case, folder: Path) -> tuple[measured_chains.Bench, list[Path]]:
     """The bench of a case, and the files that it depends on."""
     numbers = range(1, case["comparison"]["repeats"] + 1)
     repeats = [repeat_folder(folder, number) for number in numbers]
@@ -105,8 +108,12 @@ def opened(case: Case, folder: Path) -> tuple[chain_half.Bench, list[Path]]:
     own = Own(grid, lag, case["chain"]["estimator"], learning, length, run.interval_s,
               case["particles"]["diameter_m"], splits, models)  # fmt: skip
     task = Task(grid, splits, own.estimator, spacing, length)
-    folds, seed = chain_half.folds(run, learning, task), case["chain"]["seed"]
-    return chain_half.Bench(run, own, task, reference, folds, tuple(starts), seed), [main, *mixing, *series]
+    folds, seed = measured_chains.folds(run, learning, task), case["chain"]["seed"]
+    return measured_chains.Bench(run, own, task, reference, folds, tuple(starts), seed), [
+        main,
+        *mixing,
+        *series,
+    ]
 
 
 def say(reference: Reference, runs: list[Run], starts: list[Start]) -> None:

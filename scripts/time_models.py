@@ -10,14 +10,16 @@ from typing import Any
 import numpy as np
 import pandas as pd
 
-from bedchain import counting, dynamic, models
-from bedchain.cell_store import frames_up_to, open_cells, window_frames
+from bedchain.chains import counting, dynamic, registry
+from bedchain.chains.chain import Chain
+from bedchain.chains.estimators import transition_matrix
 from bedchain.errors import UserError
-from bedchain.estimators import transition_matrix
-from bedchain.frames import Frames, lag_frames, whole_steps
-from bedchain.grid import Grid
-from bedchain.stage import LOG, stage, write_csv
-from bedchain.trajectory import read_manifest
+from bedchain.files import write_csv
+from bedchain.stage import LOG, stage
+from bedchain.trajectory.cell_store import frames_up_to, open_cells, window_frames
+from bedchain.trajectory.frames import Frames, lag_frames, whole_steps
+from bedchain.trajectory.grid import Grid
+from bedchain.trajectory.store import read_manifest
 
 # a median of many repeats where they are short, of a few where one takes seconds
 REPEATS = 15
@@ -60,7 +62,7 @@ def time_models(
     learning = in_memory(window_frames(trajectory, metadata, store, learn_start_s, learn_end_s))
     comparison = window_frames(trajectory, metadata, store, start_s, end_s)
     for model, path in transitions.items():
-        chain = models.load(path)
+        chain = registry.load(path)
         lag = lag_frames(chain.lag_s, comparison.interval_s)
         start = in_memory(frames_up_to(trajectory, metadata, store, start_s, lag))
         steps = whole_steps(len(comparison.times_s), lag)
@@ -137,7 +139,7 @@ def learning_rows(
         counts = count()
         estimate: Callable[[], Any] = lambda: transition_matrix(counts, estimator)  # noqa: E731
     elif model != "dynamic":
-        learn = lambda: models.learn(model, learning, grid, lag, estimator, **options)  # noqa: E731
+        learn = lambda: registry.learn(model, learning, grid, lag, estimator, **options)  # noqa: E731
         return [measured(f"{model}_learn", learn, moves, "particle moves")]
     else:
         count = lambda: (counting.count_pairs(cells, n_cells, lag), counting.count_moves(cells, n_cells, lag))  # noqa: E731
@@ -150,7 +152,7 @@ def learning_rows(
 
 
 def running_rows(
-    model: str, chain: models.Chain, start: Frames, steps: int, splits: tuple[float, float], seed: int
+    model: str, chain: Chain, start: Frames, steps: int, splits: tuple[float, float], seed: int
 ) -> list[Row]:
     """Exact mixing curves, and a Monte Carlo of every particle, over the comparison window.
 

@@ -9,10 +9,11 @@ from pathlib import Path
 import numpy as np
 import pandas as pd
 
-from bedchain import archive
-from bedchain.packing import read_levels, with_velocities
-from bedchain.stage import LOG, complete, stage, write_csv, write_npy_header
-from bedchain.trajectory import STORED, trajectory_metadata
+from bedchain.files import complete, write_csv, write_npy_header
+from bedchain.stage import LOG, stage
+from bedchain.trajectory import archive
+from bedchain.trajectory.packed_positions import read_levels, with_velocities
+from bedchain.trajectory.store import STORED, trajectory_metadata
 
 
 def unpack_reference(

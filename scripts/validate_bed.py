@@ -7,11 +7,12 @@ import numpy as np
 import pandas as pd
 from matplotlib import pyplot as plt
 
-from bedchain.figures import DOUBLE_COLUMN_IN, LINE_COLOUR, figure_style, save_figure
-from bedchain.frames import window
-from bedchain.stage import LOG, stage, write_csv
-from bedchain.trajectory import open_trajectory
-from bedchain.validation import Bed, compare, read_points, simulated
+from bedchain.figures.style import DOUBLE_COLUMN_IN, LINE_COLOUR, figure_style, save_figure
+from bedchain.files import write_csv
+from bedchain.stage import LOG, stage
+from bedchain.studies.validation import Bed, compare, read_points, simulated
+from bedchain.trajectory.frames import window
+from bedchain.trajectory.store import open_trajectory
 
 AIMS = {"voidage_error_rms": 0.05, "particle_velocity_error_rms": 0.04}
 FINE_POINTS = 81  # of the drawn curve

@@ -14,7 +14,7 @@ from pathlib import Path
 import pandas as pd
 
 from bedchain.errors import report_user_errors
-from bedchain.verification.suite import CHECKS, verify
+from bedchain.studies.verification.suite import CHECKS, verify
 
 SOLVER = Path("results/bin/bedFoam")
 FOLDER = Path("results/verify")

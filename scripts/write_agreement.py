@@ -5,8 +5,9 @@ from pathlib import Path
 
 import pandas as pd
 
-from bedchain.agreement import agreement, cost_metrics, read_claims, swing_metrics
-from bedchain.stage import LOG, stage, write_csv
+from bedchain.comparison.claims import agreement, cost_metrics, read_claims, swing_metrics
+from bedchain.files import write_csv
+from bedchain.stage import LOG, stage
 
 
 def write_agreement(

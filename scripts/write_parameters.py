@@ -8,11 +8,11 @@ import argparse
 import os
 from pathlib import Path
 
-from bedchain.case import load_case, load_schema
-from bedchain.disk import require_disk, run_bytes
+from bedchain.case.load import load_case
+from bedchain.case.parameters import fluidization_line, liggghts_text, openfoam_text, solver_parameters
+from bedchain.case.schema import load_schema
+from bedchain.dem.disk import require_disk, run_bytes
 from bedchain.errors import report_user_errors
-from bedchain.parameters import liggghts_text, openfoam_text, solver_parameters
-from bedchain.slab import fluidization_line
 
 
 def write_parameters(case_file: Path, folder: Path) -> None:

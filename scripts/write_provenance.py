@@ -5,9 +5,10 @@ import hashlib
 import json
 from pathlib import Path
 
-from bedchain.case import Case
+from bedchain.case.schema import Case
+from bedchain.files import complete
 from bedchain.provenance import case_hash, debian_packages, git_state, machine, python_packages, rule_times
-from bedchain.stage import LOG, complete, stage
+from bedchain.stage import LOG, stage
 
 
 def write_provenance(case: Case, inputs: dict[str, Path], benchmarks: Path, provenance: Path) -> None:

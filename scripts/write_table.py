@@ -10,10 +10,11 @@ import pandas as pd
 from matplotlib import pyplot as plt
 from matplotlib.figure import Figure
 
-from bedchain.case import load_schema
-from bedchain.figures import DOUBLE_COLUMN_IN, figure_style, save_figure
-from bedchain.stage import stage, write_csv
-from bedchain.table import table_of_values
+from bedchain.case.schema import load_schema
+from bedchain.comparison.table1 import table_of_values
+from bedchain.figures.style import DOUBLE_COLUMN_IN, figure_style, save_figure
+from bedchain.files import write_csv
+from bedchain.stage import stage
 
 # "Inner width along x [m]. Table 1 (0.27 m)." -> name, unit, note
 DESCRIPTION = re.compile(r"(?P<name>.*?)\s*\[(?P<unit>[^\]]*)\]\s*[.,;:]?\s*(?P<note>.*)", re.DOTALL)

@@ -15,13 +15,12 @@ from snakemake.api import SnakemakeApi
 from snakemake.settings.enums import Quietness
 from snakemake.settings.types import OutputSettings, ResourceSettings
 
-sys.path.insert(0, str(Path(__file__).resolve().parents[1] / "scripts"))
+from bedchain.case.load import load_case
+from bedchain.case.schema import load_schema
+from bedchain.trajectory.archive import solver_keys
+from bedchain.workflow import code, files_behind, imported_files, source_files
+from made import ROOT
 
-from bedchain.archive import solver_keys
-from bedchain.case import load_case, load_schema
-from bedchain.workflow import imported_modules, modules, source_files
-
-ROOT = Path(__file__).resolve().parents[1]
 COPIED = ("Snakefile", "cases", "scripts", "openfoam_case", "liggghts_inputs", "envs/python.yaml")
 ALL = {
     *(
@@ -329,8 +328,8 @@ def test_another_batch_leaves_the_matrices_alone(finished, case):
         ("liggghts_inputs/in.settle", "run_dem"),
         ("openfoam_case/system/fvSolution", "run_dem"),
         ("openfoam_case/solver/bedFoam/dragLaws.C", "build_solver"),
-        ("scripts/bedchain/grid.py", "assign_cells"),
-        ("scripts/bedchain/frames.py", "parse_dumps"),
+        ("scripts/bedchain/trajectory/grid.py", "assign_cells"),
+        ("scripts/bedchain/trajectory/frames.py", "parse_dumps"),
     ],
 )
 def test_an_edited_source_runs_what_depends_on_it(finished, file, first):
@@ -419,11 +418,11 @@ def test_every_script_has_the_name_of_its_rule(rules):
 def test_every_rule_names_the_modules_that_its_script_imports(rules):
     wrong = []
     for name, rule in rules.items():
-        imported = imported_modules(script_of(rule))
-        assert imported, f"{rule.script} imports nothing of the library"
+        wanted = set(code(name))
+        assert wanted, f"{rule.script} imports nothing of the library"
         given = {str(file) for file in rule.input if str(file).startswith("scripts/bedchain/")}
-        if given != set(modules(*imported)):
-            wrong.append(f"rule {name} must name modules{tuple(imported)}")
+        if given != wanted:
+            wrong.append(f"rule {name} must take code({name!r})")
     assert not wrong, "\n".join(wrong)
 
 
@@ -440,10 +439,14 @@ def test_rules_give_exactly_what_their_scripts_use(rules, kind):
 def test_imports_are_followed_through_modules(tmp_path):
     file = tmp_path / "script.py"
     file.write_text(
-        "import os\nfrom bedchain import grid\ndef f():\n    import bedchain.disk\n", encoding="utf-8"
+        "import os\nfrom bedchain.trajectory import grid\ndef f():\n    import bedchain.dem.disk\n"
+        "    from bedchain.files import complete\n",
+        encoding="utf-8",
     )
-    assert imported_modules(file) == ["disk", "grid"]
-    assert "scripts/bedchain/errors.py" in modules("disk")
+    library = Path("scripts/bedchain")
+    own = {library / "trajectory/grid.py", library / "dem/disk.py", library / "files.py"}
+    assert imported_files(file) == own
+    assert str(library / "errors.py") in files_behind(library / "dem/disk.py")
 
 
 def test_sources_are_found_sorted_and_without_links(tmp_path):

@@ -79,3 +79,7 @@ def report_user_errors(log: Path | str | None = None) -> Iterator[None]:
             with Path(log).open("a", encoding="utf-8") as stream:
                 stream.write(message + "\n")
         raise SystemExit(1) from None
+
+
+class DataError(UserError, ValueError):
+    """Data that cannot be used as they are; the message says which, where, and the way out."""

@@ -8,11 +8,10 @@ import os
 import platform
 import shutil
 import subprocess
+from collections.abc import Mapping
 from importlib.metadata import distributions
 from pathlib import Path
 from typing import Any
-
-from bedchain.case import Case
 
 DEBIAN_PACKAGES = ("liggghts", "libliggghts-dev", "openfoam", "libopenfoam", "libopenmpi-dev", "g++")
 MB = 1_000_000
@@ -54,7 +53,7 @@ def machine() -> dict[str, Any]:
     }
 
 
-def case_hash(case: Case) -> str:
+def case_hash(case: Mapping[str, Any]) -> str:
     """SHA-256 of a complete case, defaults included, independent of its comments and order."""
     return hashlib.sha256(json.dumps(case, sort_keys=True).encode()).hexdigest()
 

@@ -2,15 +2,17 @@
 """What the Snakefile asks: the case, its keys, and the files that a rule depends on."""
 
 import ast
+from functools import cache
 from pathlib import Path
 from typing import Any
 
-from bedchain.archive import SIMULATE, check_archive
-from bedchain.case import Case, load_case, load_schema
+from bedchain.case.load import load_case
+from bedchain.case.parameters import solver_parameters
+from bedchain.case.presets import preset_named, with_preset
+from bedchain.case.scene_checks import used_keys
+from bedchain.case.schema import Case, load_schema
 from bedchain.errors import UserError, report_user_errors
-from bedchain.fidelity import preset_named, with_preset
-from bedchain.parameters import solver_parameters
-from bedchain.scene_checks import used_keys
+from bedchain.trajectory.archive import SIMULATE, check_archive
 
 TABLE_SECTIONS = (
     "bed",
@@ -26,7 +28,8 @@ TABLE_SECTIONS = (
     "mixing",
 )
 
-LIBRARY = Path("scripts/bedchain")
+SCRIPTS = Path("scripts")
+LIBRARY = "bedchain"
 CASES = Path("cases")
 
 
@@ -144,40 +147,64 @@ def table_values(case: Case) -> dict[str, Any]:
     return values
 
 
-def modules(*names: str) -> list[str]:
-    """Files of library modules and of all that they import, as inputs of the rule that uses them.
+def code(script: str) -> list[str]:
+    """Library files that a script imports, directly or through others, as inputs of its rule.
 
     Parameters
     ----------
-    *names : str
-        Modules that the rule's script imports itself, such as ``"grid"``.
+    script : str
+        Its name, such as ``"assign_cells"``.
 
     Returns
     -------
     list of str
         Paths, sorted; a change in any of them reruns the rule.
     """
-    found: set[str] = set()
-    waiting = list(names)
+    return files_behind(SCRIPTS / f"{script}.py")
+
+
+def files_behind(file: Path) -> list[str]:
+    """Library files that a Python file imports, directly or through others, sorted."""
+    behind: set[Path] = set()
+    waiting = [file]
     while waiting:
-        name = waiting.pop()
-        if name not in found:
-            found.add(name)
-            waiting += imported_modules(LIBRARY / f"{name}.py")
-    return sorted(str(LIBRARY / f"{name}.py") for name in found)
+        fresh = imported_files(waiting.pop()) - behind
+        behind |= fresh
+        waiting += fresh
+    return sorted(map(str, behind))
 
 
-def imported_modules(file: Path) -> list[str]:
-    """Names of the library's modules that a Python file imports, wherever in it the imports stand."""
-    names = []
+@cache
+def imported_files(file: Path) -> frozenset[Path]:
+    """Library files that a Python file itself imports, wherever in it the imports stand."""
+    names: set[str] = set()
     for node in ast.walk(ast.parse(file.read_text(encoding="utf-8"))):
         if isinstance(node, ast.Import):
-            names += [alias.name for alias in node.names]
-        elif isinstance(node, ast.ImportFrom) and node.module == "bedchain":
-            names += [f"bedchain.{alias.name}" for alias in node.names]
+            names |= {alias.name for alias in node.names}
         elif isinstance(node, ast.ImportFrom) and node.module:
-            names.append(node.module)
-    return sorted({name.split(".")[1] for name in names if name.startswith("bedchain.")})
+            names |= {node.module, *(f"{node.module}.{alias.name}" for alias in node.names)}
+    library = [name for name in names if name.split(".")[0] == LIBRARY]
+    return frozenset(source for name in library for source in module_files(name))
+
+
+def module_files(name: str) -> list[Path]:
+    """The file of a module, and those of the packages around it that hold more than a docstring.
+
+    Parameters
+    ----------
+    name : str
+        Dotted; what is no module (a function, a class) has no file of its own.
+    """
+    parts = name.split(".")
+    packages = [SCRIPTS.joinpath(*parts[:end], "__init__.py") for end in range(1, len(parts) + 1)]
+    module = SCRIPTS.joinpath(*parts).with_suffix(".py")
+    return [file for file in packages if file.exists() and runs_code(file)] + [module] * module.exists()
+
+
+@cache
+def runs_code(file: Path) -> bool:
+    """Whether a Python file holds anything besides its docstring."""
+    return len(ast.parse(file.read_text(encoding="utf-8")).body) > 1
 
 
 def dated(*patterns: str) -> dict[str, int]:

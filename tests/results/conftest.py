@@ -2,14 +2,13 @@
 """Artefacts of the cases that were run before: ``short`` and ``paper``, or those that BEDCHAIN_CASE names."""
 
 import os
-from pathlib import Path
 
 import pandas as pd
 import pytest
 
-from bedchain.case import load_case
+from bedchain.case.load import load_case
+from made import ROOT
 
-ROOT = Path(__file__).parents[2]
 NAMES = os.environ.get("BEDCHAIN_CASE", "short paper").split()
 
 

@@ -7,9 +7,9 @@ import numpy as np
 import pandas as pd
 import pytest
 
-from bedchain.cell_store import open_cells
-from bedchain.parameters import weight_per_area
-from bedchain.trajectory import open_trajectory, read_manifest
+from bedchain.case.parameters import weight_per_area
+from bedchain.trajectory.cell_store import open_cells
+from bedchain.trajectory.store import open_trajectory, read_manifest
 
 # a fluidized bed weighs on the gas; floor and side walls carry 2 to 3 % of it, by the window that is averaged
 WEIGHT_SHARE = 0.05

@@ -7,8 +7,8 @@ import numpy as np
 import pandas as pd
 import pytest
 
-from bedchain import models
-from bedchain.markov_chain import MarkovChain
+from bedchain.chains import registry
+from bedchain.chains.markov_chain import MarkovChain
 
 # row sums and masses: round-off of some hundred additions
 ROUND_OFF = 1e-10
@@ -33,7 +33,7 @@ def sources(case):
 
 def test_chains_keep_their_particles(results, case):
     for model in case["chain"]["models"]:
-        chain = models.load(results / f"transitions_{model}.npz")
+        chain = registry.load(results / f"transitions_{model}.npz")
         if isinstance(chain, MarkovChain):
             np.testing.assert_allclose(chain.matrix.sum(axis=1), 1, atol=ROUND_OFF)
         with np.load(results / f"chain_{model}.npz") as run:

@@ -5,12 +5,11 @@ import numpy as np
 import pandas as pd
 import pytest
 
-from bedchain.cell_store import open_cells
-from bedchain.diagnostics import total_variation
-from bedchain.distribution import share_by_cell
-from bedchain.frames import window
-from bedchain.markov_chain import MarkovChain
-from bedchain.models import load
+from bedchain.chains.markov_chain import MarkovChain
+from bedchain.chains.registry import load
+from bedchain.measures.batch import share_by_cell, total_variation
+from bedchain.trajectory.cell_store import open_cells
+from bedchain.trajectory.frames import window
 
 COLUMNS = ["quantity", "source", "lag_s", "time_s", "height_m", "part", "value", "unit", "ci_low", "ci_high"]
 GROUPS = ("left", "right", "low", "up")

@@ -7,8 +7,8 @@ import matplotlib.image
 import pandas as pd
 import pytest
 
-from bedchain.case import load_schema
-from bedchain.parameters import solver_parameters
+from bedchain.case.parameters import solver_parameters
+from bedchain.case.schema import load_schema
 
 NAMES = ["fig1_cells", "fig2_cost", "fig3_static", "fig4_dynamic", "fig5a_radial", "fig5b_axial", "snapshot"]
 NAMES += ["fig_difference", "fig_chapman_kolmogorov", "fig_timescales", "fig_stationarity", "fig_discussion"]

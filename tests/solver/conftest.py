@@ -3,14 +3,13 @@
 
 import subprocess
 import sys
-from pathlib import Path
 
 import pytest
 import yaml
 
+from made import ROOT
 from write_parameters import write_parameters
 
-ROOT = Path(__file__).parents[2]
 TINY = {
     "title": "tiny bed for the tests",
     "seed": 10007,

@@ -8,15 +8,16 @@ import numpy as np
 import pandas as pd
 import pytest
 import yaml
-from known_gas import COLUMNS, HEIGHT, ROWS, WIDTH, voidage_at, write_gas
-from synthetic_bed import STAMP, rolling_bed, write_run, write_series
 
-from bedchain.archive import check_archive, check_files, read_provenance
-from bedchain.case import load_case, load_schema
+from bedchain.case.load import load_case
+from bedchain.case.schema import load_schema
+from bedchain.dem.gas_field import gas_near
 from bedchain.errors import UserError
-from bedchain.gas_field import gas_near
-from bedchain.trajectory import open_trajectory, read_manifest
+from bedchain.trajectory.archive import check_archive, check_files, read_provenance
+from bedchain.trajectory.store import open_trajectory, read_manifest
 from check_reference import check_reference
+from made.gas import COLUMNS, HEIGHT, ROWS, WIDTH, voidage_at, write_gas
+from made.synthetic_bed import STAMP, rolling_bed, write_run, write_series
 from measure_mixing import measure_mixing
 from pack_reference import check_parameters, finished_manifest, pack_reference
 from parse_dumps import parse_dumps

@@ -9,9 +9,9 @@ import numpy as np
 import pandas as pd
 import pytest
 
-from bedchain.dumps import read_dump
+from bedchain.dem.segments import input_stamp
 from bedchain.errors import UserError
-from bedchain.segments import input_stamp
+from bedchain.trajectory.dumps import read_dump
 from run_dem import input_files, run_dem
 
 ROUND_OFF = 1e-12  # relative, of sums over some hundred terms

@@ -12,17 +12,17 @@ import yaml
 
 import run_dem
 from assign_cells import assign_cells
-from bedchain.dumps import read_dump
+from bedchain.chains.registry import load
 from bedchain.errors import UserError
-from bedchain.models import load
-from bedchain.storage import read_arrays
-from bedchain.trajectory import open_trajectory
+from bedchain.files import read_arrays
+from bedchain.trajectory.dumps import read_dump
+from bedchain.trajectory.store import open_trajectory
 from build_transitions import build_transitions
+from made import ROOT
 from parse_dumps import parse_dumps
 from run_chain import run_chain
 from write_parameters import write_parameters
 
-ROOT = Path(__file__).parents[2]
 DIAMETER, REVOLUTION, NUMBER, END = 0.06, 1.0, 160, 8.0
 SMALL = {
     "title": "small drum for the tests",

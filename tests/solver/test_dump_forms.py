@@ -5,9 +5,9 @@ import subprocess
 
 import numpy as np
 import pytest
-from synthetic_bed import COLUMNS
 
-from bedchain.dumps import frame_of, read_dump
+from bedchain.trajectory.dumps import frame_of, read_dump
+from made.synthetic_bed import COLUMNS
 
 WIDTH, HEIGHT = 0.03, 0.05
 # centres of five spheres of 1 mm, two of them in contact, on both halves of the box

@@ -7,12 +7,12 @@ import matplotlib.image
 import numpy as np
 import pandas as pd
 import pytest
-from known_gas import COLUMNS, HEIGHT, ROWS, WIDTH, voidage_at, write_gas
-from synthetic_bed import rolling_bed, write_run
 
+from bedchain.dem.gas_field import nearest_gas, read_gas_field
 from bedchain.errors import UserError
-from bedchain.gas_field import nearest_gas, read_gas_field
-from bedchain.trajectory import read_manifest
+from bedchain.trajectory.store import read_manifest
+from made.gas import COLUMNS, HEIGHT, ROWS, WIDTH, voidage_at, write_gas
+from made.synthetic_bed import rolling_bed, write_run
 from parse_dumps import parse_dumps
 from plot_snapshot import plot_snapshot
 

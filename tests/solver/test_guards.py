@@ -10,11 +10,11 @@ import pandas as pd
 import pytest
 
 import run_dem as stage
-from bedchain import gas_case
+from bedchain.dem import gas_case
+from bedchain.dem.lattices import lattice
+from bedchain.dem.segments import SETTLED, input_stamp
+from bedchain.dem.small_cases import Setup, run_gas
 from bedchain.errors import UserError
-from bedchain.segments import SETTLED, input_stamp
-from bedchain.verification.bench import Setup, run_gas
-from bedchain.verification.packing import lattice
 
 DEADLINE_S = 600  # a run that hangs; one that stops takes a second or two on an idle machine
 VECTOR = r"\((?P<x>\S+) \S+ (?P<z>\S+)\)"

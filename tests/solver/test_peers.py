@@ -6,11 +6,11 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from bedchain.peers import dpmfoam
-from bedchain.peers.bed import fluidized_bed, with_numbers
-from bedchain.peers.study import all_peers, missing, run_in_turns
-from bedchain.peers.table import summary
-from bedchain.verification.laws import Suspension, ergun_gradient
+from bedchain.studies.peers import dpmfoam
+from bedchain.studies.peers.bed import fluidized_bed, with_numbers
+from bedchain.studies.peers.study import all_peers, missing, run_in_turns
+from bedchain.studies.peers.table import summary
+from bedchain.studies.verification.laws import Suspension, ergun_gradient
 
 PARTICLES = 300
 START, DURATION = 0.03, 0.004  # [s]: past the ramp of the tiny bed; 200 steps of the particles

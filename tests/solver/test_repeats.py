@@ -7,9 +7,9 @@ import numpy as np
 import pandas as pd
 import pytest
 
-from bedchain.dumps import read_dump
+from bedchain.dem.repeats import KICK_M_S
 from bedchain.errors import UserError
-from bedchain.repeats import KICK_M_S
+from bedchain.trajectory.dumps import read_dump
 from run_dem import repeat_dem, run_dem
 
 COLUMNS = ["id", "x", "z", "vx", "vz"]

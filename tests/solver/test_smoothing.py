@@ -4,19 +4,18 @@
 import re
 import shutil
 from dataclasses import replace
-from pathlib import Path
 
 import numpy as np
 import pandas as pd
 import pytest
 
-from bedchain.gas_case import last_time
-from bedchain.segments import SETTLED, input_stamp
-from bedchain.verification.bench import Setup, run_gas
-from bedchain.verification.packing import lattice
+from bedchain.dem.gas_case import last_time
+from bedchain.dem.lattices import lattice
+from bedchain.dem.segments import SETTLED, input_stamp
+from bedchain.dem.small_cases import Setup, run_gas
+from made import ROOT
 from run_dem import Run, input_files, run_dem, settle
 
-ROOT = Path(__file__).parents[2]
 LENGTHS = [0, 2, 3, 4]  # diameters
 DIAMETER, WIDTH, HEIGHT = 1e-3, 0.02, 0.06
 NUMBER = 300

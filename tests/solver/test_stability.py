@@ -1,16 +1,14 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """The reduced stability study by the real solvers: every kind of end, and guards that are needed."""
 
-from pathlib import Path
-
 import pytest
 
 import study_stability as stage
-from bedchain.stability.bed_settings import bed_settings
-from bedchain.stability.settings import ON, is_of_chains
-from bedchain.stability.verdict import DIVERGED, FAULTS, INACCURATE, REFUSED, STABLE
+from bedchain.studies.stability.bed_settings import bed_settings
+from bedchain.studies.stability.settings import ON, is_of_chains
+from bedchain.studies.stability.verdict import DIVERGED, FAULTS, INACCURATE, REFUSED, STABLE
+from made import ROOT
 
-ROOT = Path(__file__).parents[2]
 LONGEST_S = 600.0  # on a busy machine; seconds on an idle one
 GROUPS = sorted({setting.group for setting in bed_settings()})
 

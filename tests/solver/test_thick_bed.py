@@ -8,9 +8,9 @@ import numpy as np
 import pandas as pd
 import pytest
 
-from bedchain.dumps import read_dump
+from bedchain.dem.segments import input_stamp, read_parameters
 from bedchain.errors import CaseError
-from bedchain.segments import input_stamp, read_parameters
+from bedchain.trajectory.dumps import read_dump
 from run_dem import input_files, run_dem
 
 THICK = {

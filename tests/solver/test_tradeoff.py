@@ -5,10 +5,10 @@ import numpy as np
 import pandas as pd
 import pytest
 
-from bedchain.case import load_case
-from bedchain.tradeoff.bed_half import PEAK_FILE, simulate_all
-from bedchain.tradeoff.bed_variants import BedVariant, bed_variants
-from bedchain.variants import Variant
+from bedchain.case.load import load_case
+from bedchain.case.variants import Variant
+from bedchain.studies.tradeoff.bed_variants import BedVariant, bed_variants
+from bedchain.studies.tradeoff.simulated_beds import PEAK_FILE, simulate_all
 from measure_mixing import measure_mixing
 from parse_dumps import parse_dumps
 from run_dem import repeat_dem, run_dem

@@ -2,15 +2,13 @@
 """The solvers against theory: every row of the verification table, and that a wrong row is seen."""
 
 import math
-from pathlib import Path
 
 import pytest
 
 from bedchain.errors import UserError
-from bedchain.verification.rows import Row, table_of
-from bedchain.verification.suite import CHECKS, verify
-
-ROOT = Path(__file__).parents[2]
+from bedchain.studies.verification.rows import Row, table_of
+from bedchain.studies.verification.suite import CHECKS, verify
+from made import ROOT
 
 
 @pytest.mark.parametrize("name", CHECKS)

@@ -3,13 +3,12 @@
 
 import shutil
 import subprocess
-from pathlib import Path
 
 import pytest
 
-from bedchain.verification.suite import verify
+from bedchain.studies.verification.suite import verify
+from made import ROOT
 
-ROOT = Path(__file__).parents[2]
 ERRORS = [
     ("dragLaws.C", "150*solids", "130*solids", "uniform_bed", "lattice at 0.2 m/s, gidaspow"),
     ("pEqn.H", "== fvc::ddt(voidage) + ", "== ", "suspension", "sinking speed of a uniform suspension"),

@@ -5,7 +5,11 @@ from types import SimpleNamespace
 
 import numpy as np
 import pytest
-from small_bed import (
+
+from assign_cells import assign_cells
+from build_transitions import build_transitions
+from compare_mixing import compare_mixing
+from made.small_bed import (
     BATCH,
     COLUMNS,
     COMPARE,
@@ -24,11 +28,7 @@ from small_bed import (
     WEIGHT_PA,
     WIDTH,
 )
-from synthetic_bed import rolling_bed, write_run, write_series
-
-from assign_cells import assign_cells
-from build_transitions import build_transitions
-from compare_mixing import compare_mixing
+from made.synthetic_bed import rolling_bed, write_run, write_series
 from parse_dumps import parse_dumps
 from run_chain import run_chain
 

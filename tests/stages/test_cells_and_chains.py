@@ -4,7 +4,14 @@
 import numpy as np
 import pandas as pd
 import pytest
-from small_bed import (
+
+from assign_cells import assign_cells
+from bedchain.chains import registry
+from bedchain.errors import DataError, UserError
+from bedchain.trajectory.cell_store import open_cells
+from build_transitions import build_transitions
+from compare_mixing import compare_mixing
+from made.small_bed import (
     BATCH,
     COLUMNS,
     COMPARE,
@@ -23,15 +30,7 @@ from small_bed import (
     WEIGHT_PA,
     WIDTH,
 )
-from synthetic_bed import SERIES_NOISE
-
-from assign_cells import assign_cells
-from bedchain import models
-from bedchain.cell_store import open_cells
-from bedchain.errors import UserError
-from bedchain.frames import DataError
-from build_transitions import build_transitions
-from compare_mixing import compare_mixing
+from made.synthetic_bed import SERIES_NOISE
 from run_chain import moment_steps, run_chain
 
 STEPS = 40
@@ -69,7 +68,7 @@ def test_cells_smaller_than_a_particle_are_refused(bed, tmp_path):
 
 @pytest.mark.parametrize("model", MODELS)
 def test_transitions_keep_every_particle(bed, model):
-    chain = models.load(bed.transitions[model])
+    chain = registry.load(bed.transitions[model])
     np.testing.assert_allclose(chain.matrix.sum(axis=1), 1, atol=ROUND_OFF)
     assert chain.lag_s == pytest.approx(0.025)
 

@@ -6,16 +6,16 @@ from types import SimpleNamespace
 import numpy as np
 import pandas as pd
 import pytest
-from drawn import COLOURS, DPI, assert_drawn, outputs
-from small_bed import COLUMNS, MODELS, MOMENTS, ROWS, SPLIT_X, SPLIT_Z
-from synthetic_bed import write_run
 
 from assign_cells import assign_cells
-from bedchain.diagnosis import COLUMNS as HEADER
+from bedchain.comparison.diagnostics import COLUMNS as HEADER
 from bedchain.errors import UserError
-from bedchain.mixing import GROUPS
+from bedchain.measures.mixing import GROUPS
 from build_transitions import build_transitions
 from diagnose_chains import diagnose_chains
+from made.drawings import COLOURS, DPI, assert_drawn, outputs
+from made.small_bed import COLUMNS, MODELS, MOMENTS, ROWS, SPLIT_X, SPLIT_Z
+from made.synthetic_bed import write_run
 from parse_dumps import parse_dumps
 from plot_chapman_kolmogorov import plot_chapman_kolmogorov
 from plot_difference import plot_difference

@@ -2,17 +2,15 @@
 """The stage that estimates: a table and a text before anything is there, and the ratio after a run."""
 
 import json
-from pathlib import Path
 
 import numpy as np
 import pandas as pd
 import pytest
 
-from bedchain.case import load_case
-from bedchain.rates import SOLVERS, bed_of, solver_seconds
+from bedchain.case.load import load_case
+from bedchain.studies.cost.machine_speed import SOLVERS, bed_of, solver_seconds
 from estimate_cost import estimate_cost
-
-ROOT = Path(__file__).resolve().parents[2]
+from made import ROOT
 
 
 @pytest.fixture(scope="module")

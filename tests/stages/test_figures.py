@@ -4,8 +4,11 @@
 import numpy as np
 import pandas as pd
 import pytest
-from drawn import COLOURS, DPI, assert_drawn, outputs
-from small_bed import (
+
+from bedchain.errors import UserError
+from bedchain.trajectory.store import read_manifest
+from made.drawings import COLOURS, DPI, assert_drawn, outputs
+from made.small_bed import (
     BATCH,
     COLUMNS,
     COMPARE,
@@ -18,9 +21,6 @@ from small_bed import (
     SPLIT_X,
     SPLIT_Z,
 )
-
-from bedchain.errors import UserError
-from bedchain.trajectory import read_manifest
 from plot_cells import plot_cells
 from plot_cost import plot_cost, readable_ratio, readable_seconds
 from plot_distribution import plot_distribution

@@ -4,8 +4,16 @@
 import numpy as np
 import pandas as pd
 import pytest
-from drawn import DPI, assert_drawn, outputs
-from small_bed import (
+
+import run_chain
+import time_models
+from bedchain.chains import registry
+from bedchain.chains.markov_chain import MarkovChain
+from build_transitions import build_transitions
+from compare_mixing import compare_mixing
+from diagnose_chains import diagnose_chains
+from made.drawings import DPI, assert_drawn, outputs
+from made.small_bed import (
     BATCH,
     COLUMNS,
     COMPARE,
@@ -17,20 +25,12 @@ from small_bed import (
     SPLIT_Z,
     WEIGHT_PA,
 )
-
-import run_chain
-import time_models
-from bedchain import models
-from bedchain.markov_chain import MarkovChain
-from build_transitions import build_transitions
-from compare_mixing import compare_mixing
-from diagnose_chains import diagnose_chains
 from plot_chapman_kolmogorov import plot_chapman_kolmogorov
 from plot_cost import plot_cost
 from plot_mixing import plot_mixing
 from plot_timescales import plot_timescales
 
-NAMES = list(models.LEARNERS)
+NAMES = list(registry.LEARNERS)
 COLOURS = {"dem": "black", **dict.fromkeys(NAMES, "tab:blue")}
 OPTIONS = {
     "velocity_class": {"classes": [2, 3]},
@@ -61,7 +61,7 @@ def chains(bed, tmp_path_factory):
 
 @pytest.mark.parametrize("name", NAMES)
 def test_a_model_is_learned_and_run(chains, name):
-    assert models.load(chains["transitions"][name]).name == name
+    assert registry.load(chains["transitions"][name]).name == name
     with np.load(chains["chain"][name]) as chain:
         assert chain["remaining"].shape == (STEPS + 1, 4)
         assert ((chain["remaining"] >= 0) & (chain["remaining"] <= 1)).all()
@@ -72,7 +72,7 @@ def test_a_model_is_learned_and_run(chains, name):
 
 
 def test_options_reach_the_models(chains):
-    learned = {name: models.load(chains["transitions"][name]) for name in NAMES}
+    learned = {name: registry.load(chains["transitions"][name]) for name in NAMES}
     assert learned["velocity_class"].classes.number == 6
     assert learned["jump"].classes.number == 2
     assert learned["recurrence"].settings.neighbours == 2
@@ -111,7 +111,7 @@ def test_timescales_are_given_of_models_with_a_matrix(bed, chains, tmp_path):
     few = {name: chains["transitions"][name] for name in names}
     diagnose_chains(*bed.frames, few, path, LEARNING, comparison, SPLIT_X, SPLIT_Z, "pooled", 3, OPTIONS)
     table = pd.read_csv(path)
-    assert isinstance(models.load(few["velocity_class"]), MarkovChain)
+    assert isinstance(registry.load(few["velocity_class"]), MarkovChain)
     assert set(table.query("quantity == 'implied_timescale'")["source"]) == {"velocity_class"}
     assert set(table.query("quantity == 'lacey_index'")["source"]) == {"dem", *names}
     colours = {name: COLOURS[name] for name in names}

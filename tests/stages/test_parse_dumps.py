@@ -6,10 +6,10 @@ import logging
 
 import numpy as np
 import pytest
-import synthetic_bed
-from synthetic_bed import rolling_bed, write_run
 
 from bedchain.errors import UserError
+from made import synthetic_bed
+from made.synthetic_bed import rolling_bed, write_run
 from parse_dumps import parse_dumps
 
 WIDTH, HEIGHT = 0.08, 0.20

@@ -5,7 +5,11 @@ import imageio_ffmpeg
 import numpy as np
 import pandas as pd
 import pytest
-from small_bed import (
+
+from bedchain.errors import UserError
+from compare_mixing import compare_mixing
+from discuss_errors import discuss_errors
+from made.small_bed import (
     BATCH,
     COLUMNS,
     COMPARE,
@@ -21,11 +25,7 @@ from small_bed import (
     WEIGHT_PA,
     WIDTH,
 )
-from synthetic_bed import rolling_bed, write_run
-
-from bedchain.errors import UserError
-from compare_mixing import compare_mixing
-from discuss_errors import discuss_errors
+from made.synthetic_bed import rolling_bed, write_run
 from make_film import make_film
 from measure_mixing import measure_mixing
 from parse_dumps import parse_dumps

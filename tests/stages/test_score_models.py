@@ -7,13 +7,13 @@ from types import SimpleNamespace
 import numpy as np
 import pandas as pd
 import pytest
-from drawn import DPI, assert_drawn, outputs
-from persistent_walk import squared, write, write_bed
 
 import score_models as stage
-from bedchain import selection
-from bedchain.candidates import Candidate
 from bedchain.errors import UserError
+from bedchain.studies.scores import selection
+from bedchain.studies.scores.candidates import Candidate
+from made.drawings import DPI, assert_drawn, outputs
+from made.persistent_walk import squared, write, write_bed
 from plot_autocorrelation import plot_autocorrelation
 from plot_best_mixing import plot_best_mixing
 from plot_pareto import plot_pareto

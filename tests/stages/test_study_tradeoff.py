@@ -7,17 +7,17 @@ import numpy as np
 import pandas as pd
 import pytest
 import yaml
-from drawn import DPI, assert_drawn, outputs
-from persistent_walk import write, write_bed
-from synthetic_bed import write_run, write_series
 
 import study_tradeoff as stage
-from bedchain.case import load_case
+from bedchain.case.load import load_case
+from bedchain.case.variants import Variant
 from bedchain.errors import UserError
-from bedchain.tradeoff import bed_half, chain_half, settings
-from bedchain.tradeoff.bed_variants import BedVariant
-from bedchain.tradeoff.observables import seen_errors
-from bedchain.variants import Variant
+from bedchain.studies.tradeoff import chain_settings, measured_chains, simulated_beds
+from bedchain.studies.tradeoff.bed_variants import BedVariant
+from bedchain.studies.tradeoff.observables import seen_errors
+from made.drawings import DPI, assert_drawn, outputs
+from made.persistent_walk import write, write_bed
+from made.synthetic_bed import write_run, write_series
 from measure_mixing import measure_mixing
 from plot_tradeoff import plot_tradeoff
 from plot_variants import plot_variants
@@ -55,9 +55,9 @@ def write_walkers(folder):
 def fewer():
     """Fewer settings than the study's own."""
     with pytest.MonkeyPatch.context() as patch:
-        patch.setattr(settings, "TRACERS", TRACERS)
-        patch.setattr(settings, "CELL_SIZES_M", CELLS_M)
-        patch.setattr(settings, "LAGS_S", LAGS_S)
+        patch.setattr(chain_settings, "TRACERS", TRACERS)
+        patch.setattr(chain_settings, "CELL_SIZES_M", CELLS_M)
+        patch.setattr(chain_settings, "LAGS_S", LAGS_S)
         yield
 
 
@@ -144,8 +144,8 @@ def test_a_stopped_study_goes_on_where_it_was(walkers, monkeypatch):
     kept = sorted((walkers.folder / "tradeoff" / "settings").rglob("*.json"))
     assert len(kept) == len(before)
     kept[3].unlink()
-    again, real = [], chain_half.measured
-    monkeypatch.setattr(chain_half, "measured", lambda *a: again.append(a[0]) or real(*a))
+    again, real = [], measured_chains.measured
+    monkeypatch.setattr(measured_chains, "measured", lambda *a: again.append(a[0]) or real(*a))
     stage.study_tradeoff(walkers.case, walkers.folder, [])
     assert len(again) == 1
     after = read(walkers.folder)
@@ -153,7 +153,7 @@ def test_a_stopped_study_goes_on_where_it_was(walkers, monkeypatch):
 
 
 def test_scrambling_the_comparison_leaves_the_validation_alone(walkers, tmp_path, monkeypatch):
-    monkeypatch.setattr(settings, "TRACERS", ())
+    monkeypatch.setattr(chain_settings, "TRACERS", ())
     write_walkers(tmp_path)
     values = np.load(tmp_path / "trajectory.npy")
     after = round(2.0 / 0.025) + 1
@@ -176,7 +176,7 @@ def test_a_bed_is_measured_against_all_realisations(walkers, tmp_path):
     values = np.load(walkers.folder / "trajectory.npy").astype(float)
     write_run(tmp_path, values, np.arange(FRAMES) * 0.025, SIZE, SIZE)
     write_series(tmp_path, np.arange(0, 3.5, 5e-3), 2 * PRESSURE, HEIGHT, NUMBER)
-    found = seen_errors(bench.reference, bed_half.seen(tmp_path, case))
+    found = seen_errors(bench.reference, simulated_beds.seen(tmp_path, case))
     assert not (tmp_path / "trajectory.npy").exists()
     # three realisations, one of which it is: two thirds of the squares of two differences
     assert found["mixing_floors_1"] == pytest.approx(np.sqrt(4 / 3), rel=0.25)
@@ -192,8 +192,8 @@ def test_a_bed_is_measured_against_all_realisations(walkers, tmp_path):
 
 
 def test_without_repeats_the_floor_is_empty_and_said(walkers, tmp_path, caplog, monkeypatch):
-    monkeypatch.setattr(settings, "TRACERS", ())
-    monkeypatch.setattr(settings, "LAGS_S", (0.1,))
+    monkeypatch.setattr(chain_settings, "TRACERS", ())
+    monkeypatch.setattr(chain_settings, "LAGS_S", (0.1,))
     write_walkers(tmp_path)
     case = CASE | {"comparison": CASE["comparison"] | {"repeats": 0}}
     (tmp_path / "case.yaml").write_text(yaml.safe_dump(case))
@@ -223,7 +223,7 @@ def test_figures_of_the_study_are_drawn(walkers, tmp_path):
         plot_variants(walkers.folder / "tradeoff.csv", *outputs(tmp_path / "b", "b"), DPI)
     case = load_case(walkers.case)
     bench, _ = stage.opened(case, walkers.folder)
-    rows = bed_half.simulate_all(
+    rows = simulated_beds.simulate_all(
         walkers.case, [BedVariant("ablation", Variant("bad", {"time.dem_step_s": 1e-4}))], tmp_path,
         bench.reference, 1,
     )  # fmt: skip
@@ -233,7 +233,7 @@ def test_figures_of_the_study_are_drawn(walkers, tmp_path):
         write_run(tmp_path / name, values, np.arange(FRAMES) * 0.025, SIZE, SIZE)
         write_series(tmp_path / name, np.arange(0, 3.5, 5e-3), PRESSURE, HEIGHT, NUMBER)
         labels = {"half": "dem", "axis": "realisation" if name == "base" else "ablation", "variant": name}
-        errors = seen_errors(bench.reference, bed_half.seen(tmp_path / name, case))
+        errors = seen_errors(bench.reference, simulated_beds.seen(tmp_path / name, case))
         rows.append(labels | {"cost_s": cost_s} | errors)
     pd.concat([walkers.table.replace("", np.nan), pd.DataFrame(rows)]).to_csv(tmp_path / "t.csv", index=False)
     plot_variants(tmp_path / "t.csv", *outputs(tmp_path / "b", "b"), DPI)

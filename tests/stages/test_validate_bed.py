@@ -6,10 +6,9 @@ import json
 import numpy as np
 import pandas as pd
 import pytest
-from synthetic_bed import STAMP, write_binary_dump
 
-from bedchain.errors import UserError
-from bedchain.frames import DataError
+from bedchain.errors import DataError, UserError
+from made.synthetic_bed import STAMP, write_binary_dump
 from parse_dumps import parse_dumps
 from validate_bed import validate_bed
 

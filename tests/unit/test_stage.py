@@ -4,9 +4,9 @@
 import pandas as pd
 import pytest
 
-from bedchain.errors import UserError
-from bedchain.frames import DataError
-from bedchain.stage import LOG, complete, stage, write_csv
+from bedchain.errors import DataError, UserError
+from bedchain.files import complete, write_csv
+from bedchain.stage import LOG, stage
 
 
 @pytest.mark.parametrize("kind", [UserError, DataError])

@@ -1,0 +1,171 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+# The bed: simulated by LIGGGHTS and OpenFOAM in restartable segments, or out of its archive; its frames.
+
+
+rule build_solver:
+    input:
+        script="openfoam_case/solver/build.sh",
+        sources=source_files("openfoam_case/solver", "*.C", "*.H"),
+    output:
+        solver=SOLVER,
+    log:
+        "logs/build_solver.log",
+    conda:
+        "../envs/python.yaml"
+    threads: 2
+    shell:
+        "sh {input.script} {output.solver} 2>&1 | tee {log} >&2"
+
+
+# The case file's own time does not count: only a key that the solvers need makes the particles run again.
+rule write_parameters:
+    input:
+        case=ancient(f"cases/{NAME}/case.yaml"),
+    output:
+        liggghts=f"{BED}/parameters.lig",
+        openfoam=f"{BED}/caseParameters",
+    log:
+        f"{LOGS}/write_parameters.log",
+    conda:
+        "../envs/python.yaml"
+    params:
+        **solver_values(CASE),
+        folder=subpath(output.liggghts, parent=True),
+    shell:
+        "python scripts/write_parameters.py {input.case} {params.folder} 2>&1 | tee {log} >&2"
+
+
+# First of all that can run: what it warns of is read before the particles have taken hours.
+rule audit_scene:
+    input:
+        code("audit_scene"),
+    output:
+        audit=f"{RESULTS}/audit.csv",
+    log:
+        f"{LOGS}/audit_scene.log",
+    priority: 1
+    conda:
+        "../envs/python.yaml"
+    params:
+        case={section: CASE[section] for section in AUDITED if section in CASE},
+    script:
+        "audit_scene.py"
+
+
+# Hours for a large bed, so no edit of a script reruns it. Its state, dem/, is no declared output:
+# snakemake deletes the outputs of a job that failed, and the segments must outlive that.
+rule run_dem:
+    input:
+        rules.write_parameters.output,
+        solver=SOLVER if GAS else [],
+        decks=["liggghts_inputs/in.settle", "liggghts_inputs/in.fluidize"] if GAS else source_files(DRUM, "*"),
+        blocks=source_files("liggghts_inputs/include", "*.in"),
+        gas=source_files("openfoam_case", "0.orig/*", "constant/*", "system/*") if GAS else [],
+    output:
+        **RUN,
+    log:
+        f"{LOGS}/run_dem.log",
+    benchmark:
+        f"{BENCHMARKS}/run_dem.tsv"
+    conda:
+        "../envs/python.yaml"
+    threads: CASE["run"]["ranks"]
+    params:
+        **pick(CASE, "time.end_s", "time.segment_s"),
+        folder=subpath(output.dem, parent=True),
+    shell:
+        "python scripts/run_dem.py {params.folder} --end {params.end_s} --segment {params.segment_s}"
+        " --ranks {threads} 2>&1 | tee {log} >&2"
+
+
+# Another realisation of the comparison window, from a state of the main run that was changed a little.
+rule repeat_dem:
+    input:
+        rules.write_parameters.output,
+        dem=RUN["dem"],
+        solver=SOLVER,
+        decks=["liggghts_inputs/in.perturb", "liggghts_inputs/in.fluidize"],
+        blocks=source_files("liggghts_inputs/include", "*.in"),
+    output:
+        dem=f"{BED}/repeats/{{repeat}}/dem.json",
+        bed_series=f"{BED}/repeats/{{repeat}}/bed_series.csv",
+    log:
+        f"{LOGS}/repeat_dem_{{repeat}}.log",
+    benchmark:
+        f"{BENCHMARKS}/repeat_dem_{{repeat}}.tsv"
+    conda:
+        "../envs/python.yaml"
+    threads: CASE["run"]["ranks"]
+    params:
+        **pick(CASE, "comparison.start_s", "comparison.end_s", "time.segment_s"),
+        folder=subpath(input.dem, parent=True),
+    shell:
+        "python scripts/run_dem.py {params.folder} --repeat {wildcards.repeat} --start {params.start_s}"
+        " --end {params.end_s} --segment {params.segment_s} --ranks {threads} 2>&1 | tee {log} >&2"
+
+
+# Of the main run, and of each repeat in a folder of its own.
+rule parse_dumps:
+    input:
+        code("parse_dumps"),
+        dem=f"{BED}/{{run}}dem.json",
+    output:
+        trajectory=f"{BED}/{{run}}trajectory.npy",
+        metadata=f"{BED}/{{run}}trajectory.json",
+    log:
+        f"{LOGS}/{{run}}parse_dumps.log",
+    benchmark:
+        f"{BENCHMARKS}/{{run}}parse_dumps.tsv"
+    wildcard_constraints:
+        run="(repeats/[0-9]+/)?",
+    conda:
+        "../envs/python.yaml"
+    params:
+        **pick(CASE, "bed.width_m", "bed.height_m"),
+    script:
+        "parse_dumps.py"
+
+
+rule measure_mixing:
+    input:
+        code("measure_mixing"),
+        trajectory=f"{BED}/repeats/{{repeat}}/trajectory.npy",
+        metadata=f"{BED}/repeats/{{repeat}}/trajectory.json",
+    output:
+        mixing=f"{BED}/repeats/{{repeat}}/mixing.csv",
+    log:
+        f"{LOGS}/measure_mixing_{{repeat}}.log",
+    conda:
+        "../envs/python.yaml"
+    params:
+        **pick(CASE, "comparison.start_s", "comparison.end_s", "mixing"),
+        source="dem_{repeat}",
+    script:
+        "measure_mixing.py"
+
+
+# A bed that was simulated before and archived: what run_dem, parse_dumps and the repeats would leave behind.
+if REFERENCE:
+
+    ruleorder: unpack_reference > run_dem > parse_dumps > measure_mixing
+
+    rule unpack_reference:
+        input:
+            code("unpack_reference"),
+            source_files(REFERENCE, "*"),
+            provenance=f"{REFERENCE}/provenance.json",
+        output:
+            **TRAJECTORY,
+            **RUN,
+            gas=f"{BED}/gas.npz",
+            repeats=expand(rules.measure_mixing.output.mixing, repeat=REPEATS),
+        log:
+            f"{LOGS}/unpack_reference.log",
+        benchmark:
+            f"{BENCHMARKS}/unpack_reference.tsv"
+        conda:
+            "../envs/python.yaml"
+        params:
+            folder=subpath(input.provenance, parent=True),
+        script:
+            "unpack_reference.py"

@@ -1,0 +1,145 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""The case file: read, completed by the schema's defaults, and refused with every reason at once."""
+
+import difflib
+from pathlib import Path
+from typing import Any
+
+from jsonschema import Draft202012Validator
+from jsonschema.exceptions import ValidationError
+
+from bedchain.case.checks import physical_problems
+from bedchain.case.scene_checks import checked_keys
+from bedchain.case.schema import SCHEMA_FILE, Case, Schema, case_value, load_schema, schema_keys
+from bedchain.case.strict_yaml import Lines, read_yaml
+from bedchain.errors import CaseError, Problem
+
+
+def load_case(file: Path | str, schema_file: Path = SCHEMA_FILE) -> Case:
+    """Read a case file, add the defaults, and check it.
+
+    Parameters
+    ----------
+    file : path
+        The case, as ``cases/case.schema.yaml`` describes it.
+    schema_file : Path, optional
+        The schema.
+
+    Returns
+    -------
+    dict
+        Sections of keys, complete: ``case["bed"]["width_m"]``; int and float as the schema says.
+
+    Raises
+    ------
+    CaseError
+        With every problem found: unknown or missing keys, values of the wrong kind, impossible physics.
+    UserError
+        Where the file cannot be read.
+    """
+    file = Path(file)
+    schema = load_schema(schema_file)
+    data, lines = read_yaml(file)
+    if not isinstance(data, dict):
+        problem = Problem(
+            "(file)", "holds no keys", f"start from cases/short/case.yaml, see {schema_file.name}"
+        )
+        raise CaseError(file, [problem])
+    errors = Draft202012Validator(schema).iter_errors(data)
+    problems = list(dict.fromkeys(problem for error in errors for problem in _explain(error, schema, lines)))
+    broken = {problem.key for problem in problems}
+    case = _with_defaults(data, schema)
+    _fill_derived_defaults(case, schema)
+    problems += physical_problems(checked_keys(case), broken, lines)
+    if problems:
+        raise CaseError(file, sorted(problems, key=lambda problem: (problem.line or 0, problem.key)))
+    return case
+
+
+def _with_defaults(data: Any, schema: Schema) -> Any:
+    if schema.get("type") == "integer" and isinstance(data, float) and data.is_integer():
+        return int(data)
+    if schema.get("type") == "number" and isinstance(data, int) and not isinstance(data, bool):
+        return float(data)
+    if schema.get("type") != "object" or not isinstance(data, dict):
+        return data
+    filled = dict(data)
+    for name, part in schema["properties"].items():
+        if name in data or "default" in part:
+            filled[name] = _with_defaults(data.get(name, part.get("default")), part)
+    return filled
+
+
+def _fill_derived_defaults(case: Case, schema: Schema) -> None:
+    for key, part in schema_keys(schema).items():
+        section, _, name = key.rpartition(".")
+        group = case_value(case, section) if section else case
+        if "x-default-of" not in part or not isinstance(group, dict) or name in group:
+            continue
+        source = case_value(case, part["x-default-of"])
+        if isinstance(source, int | float):
+            group[name] = source * part.get("x-default-factor", 1)
+
+
+def _explain(error: ValidationError, schema: Schema, lines: Lines) -> list[Problem]:
+    path = _dotted(error.absolute_path)
+    part: Any = error.schema
+    given: Any = error.instance
+    if error.validator == "additionalProperties":
+        known = part["properties"]
+        unknown = [name for name in given if name not in known]
+        return [_unknown(_join(path, name), name, known, schema, lines) for name in unknown]
+    if error.validator == "required":
+        missing = [name for name in part["required"] if name not in given]
+        return [_missing(_join(path, name), part["properties"][name], lines.get(path)) for name in missing]
+    wrong, remedy = _wrong_value(error)
+    return [Problem(path or "(file)", wrong, remedy, lines.get(path.split("[")[0]))]
+
+
+def _unknown(path: str, name: str, known: Schema, schema: Schema, lines: Lines) -> Problem:
+    everywhere = {key.rpartition(".")[2]: key for key in schema_keys(schema)}
+    if near := difflib.get_close_matches(name, known, 1):
+        remedy = f"did you mean {near[0]}?"
+    elif near := difflib.get_close_matches(name, everywhere, 1):
+        remedy = f"did you mean {everywhere[near[0]]}?"
+    else:
+        remedy = f"known here: {', '.join(known)}"
+    return Problem(path, "is an unknown key", remedy, lines.get(path))
+
+
+def _missing(path: str, part: Schema, line: int | None) -> Problem:
+    return Problem(path, "is missing", f"add it: {part['description']}", line)
+
+
+LIMITS = {
+    "minimum": "at least {}",
+    "maximum": "at most {}",
+    "exclusiveMinimum": "above {}",
+    "exclusiveMaximum": "below {}",
+    "enum": "one of {}",
+    "type": "of the kind {}",
+    "minItems": "a list of at least {}",
+    "minLength": "a text of at least {} letter",
+}
+
+
+def _wrong_value(error: ValidationError) -> tuple[str, str]:
+    part: Any = error.schema
+    limit: Any = error.validator_value
+    limit = ", ".join(map(str, limit)) if isinstance(limit, list) else limit
+    rule = LIMITS.get(str(error.validator), "").format(limit)
+    meaning = f" ({part['description']})" if "description" in part else ""
+    if not rule:
+        return error.message, f"see the schema{meaning}"
+    return f"{error.instance!r} is not {rule}", f"give a value {rule}{meaning}"
+
+
+def _join(path: str, name: str) -> str:
+    return f"{path}.{name}" if path else name
+
+
+def _dotted(path: Any) -> str:
+    text = ""
+    for part in path:
+        text = f"{text}[{part}]" if isinstance(part, int) else _join(text, str(part))
+    return text

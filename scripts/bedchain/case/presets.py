@@ -1,0 +1,203 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Presets of the chains, cases/presets.yaml: cells, lag and model by name, with measured cost and error.
+
+A preset is brought onto a case as nearly as its bed and windows allow; particles and gas stay as they are.
+"""
+
+import math
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+from bedchain.case.checks import physical_problems
+from bedchain.case.scene_checks import checked_keys
+from bedchain.case.schema import Case, load_schema
+from bedchain.case.strict_yaml import read_yaml
+from bedchain.errors import CaseError, UserError
+from bedchain.physics.whole_numbers import ratio
+
+PRESETS = Path("cases/presets.yaml")
+MADE_BY = "snakemake tradeoff measures presets and writes results/<case>/presets.yaml"
+SETTINGS = ("cell_m", "lag_s", "model")
+MEASURED = ("cost_s", "error_floors")
+LEVEL_DIAMETERS = 0.5  # an archive keeps positions to half a diameter: cells of whole levels are exact
+
+
+@dataclass(frozen=True)
+class Preset:
+    """Settings of a chain, and what was measured with them.
+
+    Attributes
+    ----------
+    name : str
+    cell_m, lag_s : float
+        Side of a cell [m], time of a step [s].
+    model : str
+        A name in `bedchain.models.LEARNERS`.
+    cost_s : float
+        To learn and to run the chain [s]; NaN where it is not given.
+    error_floors : float
+        Error of the mixing curves in noise floors [1]; NaN where it is not given.
+    measured_on : str
+        Bed and machine; empty where it is not given.
+    """
+
+    name: str
+    cell_m: float
+    lag_s: float
+    model: str
+    cost_s: float = math.nan
+    error_floors: float = math.nan
+    measured_on: str = ""
+
+
+def read_presets(file: Path = PRESETS) -> dict[str, Preset]:
+    """The presets of a file, by name.
+
+    Parameters
+    ----------
+    file : Path
+
+    Returns
+    -------
+    dict of str to Preset
+        Empty where there is no such file.
+
+    Raises
+    ------
+    UserError
+        A preset lacks a setting, or one is of the wrong kind.
+    """
+    if not file.exists():
+        return {}
+    content, _ = read_yaml(file)
+    if not isinstance(content, dict):
+        raise UserError(f"{file} holds no presets; {MADE_BY}")
+    return {name: _preset(file, name, given) for name, given in content.items()}
+
+
+def preset_named(name: str, file: Path = PRESETS) -> Preset:
+    """One preset.
+
+    Parameters
+    ----------
+    name : str
+    file : Path
+
+    Returns
+    -------
+    Preset
+
+    Raises
+    ------
+    UserError
+        There is none of that name: with those that there are.
+    """
+    presets = read_presets(file)
+    if not presets:
+        raise UserError(f"there is no fidelity {name!r}: {file} holds no presets; {MADE_BY}")
+    if name not in presets:
+        raise UserError(f"there is no fidelity {name!r} in {file}: take one of {', '.join(presets)}")
+    return presets[name]
+
+
+def with_preset(case: Case, preset: Preset, file: Path = PRESETS) -> Case:
+    """A case whose chains are those of a preset.
+
+    Cells are as near to the preset's as divisors of the bed allow that keep a line between groups on a border
+    of cells where the case has it on one; the lag is the nearest that divides both windows; the moments of
+    Figs. 3 and 4 are brought to whole steps.
+
+    Parameters
+    ----------
+    case : dict
+        A checked case.
+    preset : Preset
+    file : Path
+        Where it is from, for messages.
+
+    Returns
+    -------
+    dict
+        A checked case; the given one is not changed.
+
+    Raises
+    ------
+    CaseError
+        The preset does not go with the case.
+    """
+    lag_s = _lag(case, preset.lag_s)
+    bed, cells, lines, diameter = case["bed"], case["cells"], case["mixing"], case["particles"]["diameter_m"]
+    columns = count_near(bed["width_m"], preset.cell_m, lines["split_x_m"], cells["columns"], diameter)
+    rows = count_near(bed["height_m"], preset.cell_m, lines["split_z_m"], cells["rows"], diameter)
+    steps = sorted({max(1, round(moment / lag_s)) for moment in case["figures"]["moments_s"]})
+    changed = case | {
+        "cells": cells | {"columns": columns, "rows": rows},
+        "chain": case["chain"] | {"lag_s": lag_s, "models": [preset.model]},
+        "figures": case["figures"] | {"moments_s": [float(step * ratio(lag_s, 1.0)) for step in steps]},
+    }
+    if problems := physical_problems(checked_keys(changed), set(), {}):
+        raise CaseError(f"{file}, {preset.name} on {case['title']}", problems)
+    return changed
+
+
+def _preset(file: Path, name: str, given: Any) -> Preset:
+    if not isinstance(given, dict):
+        raise UserError(f"{file}, {name}: {given!r} is no preset, which has {', '.join(SETTINGS)}; {MADE_BY}")
+    known = load_schema()["properties"]["chain"]["properties"]["models"]["items"]["enum"]
+    for key in SETTINGS:
+        value = given.get(key)
+        if not (value in known if key == "model" else is_positive(value)):
+            wanted = f"one of {', '.join(known)}" if key == "model" else "a number above 0"
+            raise UserError(f"{file}, {name}: {key} is {value!r}, not {wanted}; {MADE_BY}")
+    measured = {key: float(given[key]) for key in MEASURED if is_positive(given.get(key))}
+    about = str(given.get("measured_on", ""))
+    return Preset(
+        name, float(given["cell_m"]), float(given["lag_s"]), given["model"], **measured, measured_on=about
+    )
+
+
+def is_positive(value: Any) -> bool:
+    """Whether a value of a file is a number above 0."""
+    return isinstance(value, int | float) and not isinstance(value, bool) and value > 0
+
+
+def count_near(length_m: float, wanted_m: float, line_m: float, own: int, diameter_m: float) -> int:
+    """Cells along one side of the bed whose size is as near as may be to the one wanted, by its logarithm.
+
+    Parameters
+    ----------
+    length_m, wanted_m : float
+        Of the bed and of a cell [m].
+    line_m : float
+        Line between two groups [m]: where it is a border of the case's own cells, it stays one.
+    own : int
+        Cells of the case [1].
+    diameter_m : float
+        Of a particle: no cell is smaller; where half of it divides the bed, each cell is whole halves [m].
+
+    Returns
+    -------
+    int
+    """
+    levels, border = ratio(length_m, LEVEL_DIAMETERS * diameter_m), ratio(line_m, length_m)
+    kept = (border * own).denominator == 1
+    counts: list[int] = [
+        count
+        for count in range(1, int(ratio(length_m, diameter_m)) + 1)
+        if (levels.denominator > 1 or levels % count == 0) and not (kept and (border * count).denominator > 1)
+    ]
+    return min(counts or [own], key=lambda count: abs(math.log(length_m / count / wanted_m)))
+
+
+def _lag(case: Case, wanted_s: float) -> float:
+    """Time of a step that divides the learning and the comparison window [s]."""
+    interval = case["time"]["frame_interval_s"]
+    windows = [
+        int(ratio(case[name]["end_s"], interval) - ratio(case[name]["start_s"], interval))
+        for name in ("learning", "comparison")
+    ]
+    whole = math.gcd(*windows)
+    frames = [count for count in range(1, whole + 1) if whole % count == 0]
+    near = min(frames, key=lambda count: abs(math.log(count * interval / wanted_s)))
+    return float(near * ratio(interval, 1.0))

@@ -1,0 +1,40 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""The scene of a case: the numbers that decide what physics it needs."""
+
+from bedchain.case.schema import Case
+from bedchain.errors import UserError
+from bedchain.physics.packing import PACKED_AREA_SHARE, PACKED_VOLUME_SHARE, settled_height
+from bedchain.physics.scene_numbers import Scene
+
+
+def scene_of(case: Case) -> Scene:
+    """What the audit needs of a checked case.
+
+    Parameters
+    ----------
+    case : dict
+        Sections bed, particles, contact and gas, and drum where it has one.
+
+    Raises
+    ------
+    UserError
+        Where the particles are no heavier than the gas: nothing settles then, and no number has a meaning.
+    """
+    bed, particles, gas, contact = case["bed"], case["particles"], case["gas"], case["contact"]
+    if particles["density_kg_m3"] <= gas["density_kg_m3"]:
+        raise UserError(
+            f"particles.density_kg_m3 ({particles['density_kg_m3']:g}) is not above gas.density_kg_m3 "
+            f"({gas['density_kg_m3']:g}): the particles would not settle; correct one of the two"
+        )
+    diameter, width, thickness = particles["diameter_m"], bed["width_m"], bed["thickness_m"]
+    layered, solved = bed["layers"] == "many", gas["model"] != "none"
+    depth = settled_height(particles["number"], diameter, width, thickness if layered else None)
+    voidage = 1 - (PACKED_VOLUME_SHARE if layered else PACKED_AREA_SHARE * 2 / 3 * diameter / thickness)
+    return Scene(
+        diameter, particles["density_kg_m3"], gas["density_kg_m3"], gas["viscosity_Pa_s"],
+        gas["superficial_velocity_m_s"] if solved else 0.0,
+        width, thickness, depth, bed["height_m"] if "drum" in case else depth, voidage,
+        contact["young_modulus_Pa"], contact["poisson_ratio_1"], contact["friction_1"],
+        contact["rolling_friction_1"],
+        gas["cell_size_m"], solved, layered,
+    )  # fmt: skip

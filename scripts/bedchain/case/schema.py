@@ -1,0 +1,43 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""The schema of a case: its keys, their defaults, and how a value is looked up."""
+
+from pathlib import Path
+from typing import Any
+
+from jsonschema import Draft202012Validator
+
+from bedchain.case.strict_yaml import read_yaml
+
+SCHEMA_FILE = Path(__file__).resolve().parents[3] / "cases" / "case.schema.yaml"
+
+
+Case = dict[str, Any]
+
+
+Schema = dict[str, Any]
+
+
+def load_schema(file: Path = SCHEMA_FILE) -> Schema:
+    """The schema of case files (JSON Schema 2020-12)."""
+    schema, _ = read_yaml(file)
+    Draft202012Validator.check_schema(schema)
+    return dict(schema)
+
+
+def case_value(case: Case, key: str) -> Any:
+    """The value of a dotted key, None where it or its section is missing."""
+    value: Any = case
+    for name in key.split("."):
+        if not isinstance(value, dict) or name not in value:
+            return None
+        value = value[name]
+    return value
+
+
+def schema_keys(schema: Schema, section: str = "") -> dict[str, Schema]:
+    """Dotted key -> its part of the schema, for all keys that hold a value, in the order of the schema."""
+    keys: dict[str, Schema] = {}
+    for name, part in schema["properties"].items():
+        path = f"{section}.{name}" if section else name
+        keys |= schema_keys(part, path) if part.get("type") == "object" else {path: part}
+    return keys

@@ -1,0 +1,62 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Variants of a case: the same bed with some keys changed, each simulated in a folder of its own."""
+
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+from pathlib import Path
+from typing import Any
+
+import yaml
+
+from bedchain.case.load import load_case
+from bedchain.case.schema import Case
+from bedchain.case.strict_yaml import read_yaml
+from bedchain.files import complete
+
+
+@dataclass(frozen=True)
+class Variant:
+    """A case with some keys changed.
+
+    Attributes
+    ----------
+    name : str
+        Of its folder.
+    changes : mapping of str to object
+        New values by dotted key, such as ``{"gas.drag_law": "beetstra"}``.
+    """
+
+    name: str
+    changes: Mapping[str, Any] = field(default_factory=dict)
+
+
+def write_variant(case_file: Path, variant: Variant, folder: Path) -> Case:
+    """Write the case file of a variant.
+
+    Parameters
+    ----------
+    case_file : Path
+        The case that it varies.
+    variant : Variant
+    folder : Path
+        Gets ``case.yaml``; made where missing.
+
+    Returns
+    -------
+    dict
+        The variant's checked case.
+
+    Raises
+    ------
+    CaseError
+        The variant cannot be run: with every reason.
+    """
+    content = dict(read_yaml(case_file)[0])
+    for key, value in variant.changes.items():
+        section, _, name = key.partition(".")
+        content[section] = content.get(section, {}) | {name: value} if name else value
+    folder.mkdir(parents=True, exist_ok=True)
+    file = folder / "case.yaml"
+    with complete(file) as temporary:
+        temporary.write_text(yaml.safe_dump(content, sort_keys=False), encoding="utf-8")
+    return load_case(file)

@@ -1,0 +1,146 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""The dynamic chain: the next cell depends on this one and the one before (Zhuang et al. 2015, Eq. 2).
+
+It runs as a chain of first order on pairs of cells. The states are the pairs that were seen to go on, by
+rising (before, now), and after them one state per cell for particles of unknown past, which move as in the
+static chain. A move into a pair that was never seen to go on leads to the latter.
+"""
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy import sparse
+
+from bedchain.chains.classes import traps
+from bedchain.chains.counting import Counts, count_moves, count_pairs
+from bedchain.chains.estimators import estimated_rows, leak, transition_matrix
+from bedchain.chains.markov_chain import MarkovChain
+from bedchain.errors import DataError
+from bedchain.trajectory.frames import Frames
+from bedchain.trajectory.grid import Grid
+
+
+def learn(
+    frames: Frames,
+    grid: Grid,
+    lag: int = 1,
+    estimator: str = "pooled",
+    step_weights: NDArray[np.int64] | None = None,
+) -> MarkovChain:
+    """Dynamic chain from a window of frames; arguments as `registry.learn`."""
+    cells = frames.cells
+    single = count_moves(cells, grid.n_cells, lag, step_weights=step_weights)
+    double = count_pairs(cells, grid.n_cells, lag, step_weights=step_weights)
+    return from_counts(double, single, grid, lag * frames.interval_s, estimator)
+
+
+def from_counts(
+    double: Counts, single: Counts, grid: Grid, lag_s: float, estimator: str = "pooled"
+) -> MarkovChain:
+    """Dynamic chain from counted moves of pairs and of single cells.
+
+    Parameters
+    ----------
+    double : Counts
+        From `counting.count_pairs`.
+    single : Counts
+        From `counting.count_moves`, of the same window.
+    grid : Grid
+        The cells.
+    lag_s : float
+        Length of a step [s].
+    estimator : {"literal", "per_step", "pooled"}
+        How counts become probabilities.
+
+    Returns
+    -------
+    MarkovChain
+        Its report holds the share of moves that fall back on the static chain, what leaks, and the pairs
+        opened.
+
+    Raises
+    ------
+    DataError
+        The first counts are not of pairs.
+    """
+    if double.pairs is None:
+        raise DataError("counts of single cells given where those of pairs belong: count_pairs makes them")
+    n_cells = grid.n_cells
+    now = double.pairs[:, 1].astype(np.int32)
+    keys = double.pairs @ np.array([n_cells, 1])
+    rows = _stays(estimated_rows(double, estimator), now)
+    static_rows = transition_matrix(single, estimator)
+    both = sparse.csr_array(sparse.vstack((rows, static_rows), format="csr"))
+    cell_of_state = np.concatenate((now, np.arange(n_cells, dtype=np.int32)))
+    matrix, fell_back = _on_states(both, cell_of_state, keys, n_cells)
+    matrix, opened = _open_pairs(matrix, cell_of_state, double.visits)
+    visits = double.visits
+    moves_back = np.repeat(visits, np.diff(rows.indptr)) * rows.data * fell_back[: rows.nnz]
+    numbers = {
+        "pairs_1": float(len(now)),
+        "entries_1": float(matrix.nnz),
+        "leak_1": leak(double) if estimator == "literal" else 0.0,
+        "fallback_share_1": float(moves_back.sum() / visits.sum()),
+        "pairs_opened_1": float(opened.size),
+        "single_visit_pairs_1": float((visits == 1).sum()),
+    }
+    return MarkovChain("dynamic", grid, double.lag, lag_s, matrix, cell_of_state, 2, keys, len(now), numbers)
+
+
+def _stays(rows: sparse.csr_array, now: NDArray[np.int32]) -> sparse.csr_array:
+    """Rows with what is missing from 1 put on staying in the present cell."""
+    missing = 1.0 - np.asarray(rows.sum(axis=1)).ravel()
+    lost = np.flatnonzero(missing > 1e-11)
+    if lost.size == 0:
+        return rows
+    stay = sparse.csr_array((missing[lost], (lost, now[lost])), shape=rows.shape)
+    return sparse.csr_array(rows + stay)
+
+
+def _on_states(
+    both: sparse.csr_array, cell_of_state: NDArray[np.int32], keys: NDArray[np.int64], n_cells: int
+) -> tuple[sparse.csr_array, NDArray[np.bool_]]:
+    """Columns turned from cells k into states (now, k); True where the pair is unknown: past dropped."""
+    lengths = np.diff(both.indptr)
+    columns = np.empty(both.nnz, np.int32)
+    fell_back = np.empty(both.nnz, bool)
+    # In blocks of rows: the int64 keys of all entries at once would be the largest array of all.
+    for low in range(0, both.shape[0], 65536):
+        high = min(low + 65536, both.shape[0])
+        part = slice(int(both.indptr[low]), int(both.indptr[high]))
+        wanted = np.repeat(cell_of_state[low:high].astype(np.int64), lengths[low:high]) * n_cells
+        wanted += both.indices[part]
+        place = np.minimum(np.searchsorted(keys, wanted), keys.size - 1)
+        known = keys[place] == wanted
+        columns[part] = np.where(known, place, keys.size + both.indices[part])
+        fell_back[part] = ~known
+    data = both.data / np.repeat(np.asarray(both.sum(axis=1)).ravel(), lengths)
+    shape = (both.shape[0], both.shape[0])
+    matrix = sparse.csr_array((data, columns, both.indptr.astype(np.int32)), shape=shape)
+    return matrix, fell_back
+
+
+def _open_pairs(
+    matrix: sparse.csr_array, cell_of_state: NDArray[np.int32], visits: NDArray[np.int64]
+) -> tuple[sparse.csr_array, NDArray[np.int64]]:
+    """Give pairs in a trap (`classes.traps`) that other pairs lead into the static row of their cell.
+
+    Returns
+    -------
+    matrix, opened
+        The matrix and the pairs changed, rising.
+    """
+    n_pairs = visits.size
+    padded = np.concatenate((visits, np.zeros(matrix.shape[0] - n_pairs, np.int64)))
+    opened = np.zeros(0, np.int64)
+    while True:
+        trap = traps(matrix, padded)
+        moves = sparse.coo_array(matrix[:n_pairs])
+        entered = np.unique(trap[moves.col[trap[moves.row] != trap[moves.col]]])
+        shut = np.flatnonzero(np.isin(trap[:n_pairs], entered[entered >= 0]))
+        new = np.setdiff1d(shut, opened)
+        if new.size == 0:
+            return matrix, opened
+        source = np.arange(matrix.shape[0])
+        source[new] = n_pairs + cell_of_state[new]
+        matrix = sparse.csr_array(matrix[source])
+        opened = np.union1d(opened, new)

@@ -1,0 +1,124 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""One interface for every chain: learned from frames, it gives mixing curves, densities and particle paths.
+
+A model is a name in `LEARNERS` and `READERS`. Those that are Markov on some set of states (cells, pairs of
+cells, cells by velocity class) are a `MarkovChain`, which does the rest from its matrix; any other class
+with the methods of `Chain` will do as well. Scripts loop over names and know no model in particular.
+"""
+
+from collections.abc import Callable
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from bedchain.chains import dynamic, jump, recurrence, static, velocity_class
+from bedchain.chains.chain import Chain
+from bedchain.chains.markov_chain import MarkovChain
+from bedchain.errors import DataError
+from bedchain.files import read_arrays, write_arrays
+from bedchain.trajectory.frames import Frames
+from bedchain.trajectory.grid import Grid
+
+# Each learns from frames and takes the keyword arguments that `learn` passes on.
+LEARNERS: dict[str, Callable[..., Chain]] = {
+    "static": static.learn,
+    "dynamic": dynamic.learn,
+    "velocity_class": velocity_class.learn,
+    "jump": jump.learn,
+    "recurrence": recurrence.learn,
+}
+READERS: dict[str, Callable[[dict[str, NDArray[Any]]], Chain]] = {
+    "static": MarkovChain.from_arrays,
+    "dynamic": MarkovChain.from_arrays,
+    "velocity_class": MarkovChain.from_arrays,
+    "jump": jump.JumpChain.from_arrays,
+    "recurrence": recurrence.RecurrenceChain.from_arrays,
+}
+
+# Optional: for models that learn faster from other weights of the same steps.
+RELEARNERS: dict[str, Callable[..., Callable[[NDArray[np.int64]], Chain]]] = {
+    "static": static.relearner,
+    "velocity_class": velocity_class.relearner,
+    "recurrence": recurrence.relearner,
+}
+
+
+def learn(
+    name: str,
+    frames: Frames,
+    grid: Grid,
+    lag: int = 1,
+    estimator: str = "pooled",
+    step_weights: NDArray[np.int64] | None = None,
+    **options: Any,
+) -> Chain:
+    """Learn a chain from a window of frames.
+
+    Parameters
+    ----------
+    name : str
+        One of `LEARNERS`.
+    frames : Frames
+        The learning window.
+    grid : Grid
+        The cells that ``frames.cells`` refers to.
+    lag : int
+        Frames in a step.
+    estimator : {"literal", "per_step", "pooled"}
+        How counts become probabilities.
+    step_weights : (n_frames - lag,) int array, optional
+        How many times the step starting at each frame counts (bootstrap).
+    **options
+        Settings of one model only.
+
+    Returns
+    -------
+    Chain
+
+    Raises
+    ------
+    DataError
+        The name is unknown, or the data cannot be used.
+    """
+    if name not in LEARNERS:
+        raise DataError(f"model {name!r} is unknown: choose from {', '.join(LEARNERS)}")
+    return LEARNERS[name](frames, grid, lag=lag, estimator=estimator, step_weights=step_weights, **options)
+
+
+def relearner(
+    name: str, frames: Frames, grid: Grid, lag: int = 1, estimator: str = "pooled", **options: Any
+) -> Callable[[NDArray[np.int64]], Chain]:
+    """`learn` as a function of ``step_weights``, for `bands.block_chains` of one window.
+
+    Parameters are those of `learn`. A model in `RELEARNERS` counts once for all replicates.
+
+    Returns
+    -------
+    callable
+        From (n_frames - lag,) int weights to a `Chain`.
+    """
+    if name in RELEARNERS:
+        return RELEARNERS[name](frames, grid, lag=lag, estimator=estimator, **options)
+    return lambda weights: learn(name, frames, grid, lag, estimator, weights, **options)
+
+
+def save(chain: Chain, path: Path | str) -> None:
+    """Write a chain so that `load` gives it back exactly; the file appears whole or not at all."""
+    write_arrays(path, {"name": np.array(chain.name), **chain.arrays()})
+
+
+def load(path: Path | str) -> Chain:
+    """Chain written by `save`.
+
+    Raises
+    ------
+    DataError
+        The file is not one of a known model.
+    """
+    arrays = read_arrays(path)
+    name = str(arrays.pop("name", ""))
+    if name not in READERS:
+        raise DataError(f"{path} holds no chain of a known model ({name!r}): build the transitions again")
+    return READERS[name](arrays | {"name": np.array(name)})

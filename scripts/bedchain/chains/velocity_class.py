@@ -1,0 +1,191 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""The velocity-class chain: the next cell and velocity depend on the present cell and velocity.
+
+A state is a cell times a class of the velocity (vx, vz), classes of equally many particles each over the
+whole learning window. Assumed: within a class the velocity does not matter, what was before the present
+velocity does not matter, and positions are even in a cell. Where particles soon turn back, as between the
+bubbles of a narrow bed, the second makes them mix too fast: with ``earlier_s`` the class of the velocity so
+long ago is part of the state too, at the price of as many more states (3 x 3 classes twice are 81). States
+with few samples move as any particle of their cell does, whatever its velocity, so that the matrix stays
+sparse and conservative.
+"""
+
+from collections.abc import Callable, Sequence
+from dataclasses import replace
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy import sparse
+
+from bedchain.chains.classes import open_classes
+from bedchain.chains.counting import Counts, count_moves, step_starts
+from bedchain.chains.estimators import leak, transition_matrix
+from bedchain.chains.markov_chain import MarkovChain
+from bedchain.chains.velocity_binning import VelocityClasses, measured, quantile_classes
+from bedchain.errors import DataError
+from bedchain.trajectory.frames import Frames, lag_frames
+from bedchain.trajectory.grid import Grid
+
+CLASSES = (3, 3)
+# States with fewer samples move as their cell does: the shares of their few moves would be off by a third.
+FEWEST_SAMPLES = 10
+
+
+def learn(
+    frames: Frames,
+    grid: Grid,
+    lag: int = 1,
+    estimator: str = "pooled",
+    step_weights: NDArray[np.int64] | None = None,
+    classes: Sequence[int] = CLASSES,
+    fewest_samples: int = FEWEST_SAMPLES,
+    earlier_s: float = 0.0,
+) -> MarkovChain:
+    """Velocity-class chain from a window of frames.
+
+    Parameters
+    ----------
+    frames, grid, lag, estimator, step_weights
+        As `registry.learn`. The edges of the classes are those of the window, whatever its steps weigh.
+    classes : (n_x, n_z)
+        Classes of the velocity along x and z [1].
+    fewest_samples : int
+        States seen less often than this move as any particle of their cell does [1].
+    earlier_s : float
+        The class of the velocity so long ago counts too, a multiple of the frame interval [s]; 0 for none.
+
+    Returns
+    -------
+    MarkovChain
+    """
+    _, weights = step_starts(frames.cells, lag, step_weights=step_weights)
+    return relearner(frames, grid, lag, estimator, classes, fewest_samples, earlier_s)(weights)
+
+
+def relearner(
+    frames: Frames,
+    grid: Grid,
+    lag: int = 1,
+    estimator: str = "pooled",
+    classes: Sequence[int] = CLASSES,
+    fewest_samples: int = FEWEST_SAMPLES,
+    earlier_s: float = 0.0,
+) -> Callable[[NDArray[np.int64]], MarkovChain]:
+    """`learn` as a function of ``step_weights`` that knows all states already; arguments as `learn`."""
+    back = lag_frames(earlier_s, frames.interval_s) if earlier_s else 0
+    if len(frames.times_s) - lag <= back:
+        raise DataError(
+            f"{len(frames.times_s)} frames hold no step of {lag} frames after {back}: "
+            "widen the window or cut earlier_s"
+        )
+    edges, states = _states(frames, grid, classes, back)
+    n_states, lag_s = grid.n_cells * edges.number, lag * frames.interval_s
+    note = {"velocities_from_differences_1": float(not measured(frames))}
+
+    def again(weights: NDArray[np.int64]) -> MarkovChain:
+        counts = count_moves(states, n_states, lag, step_weights=weights[back:])
+        chain = from_counts(counts, edges, grid, lag_s, estimator, fewest_samples)
+        return replace(chain, report=chain.report | note)
+
+    return again
+
+
+def from_counts(
+    counts: Counts,
+    classes: VelocityClasses,
+    grid: Grid,
+    lag_s: float,
+    estimator: str = "pooled",
+    fewest_samples: int = FEWEST_SAMPLES,
+) -> MarkovChain:
+    """Velocity-class chain from counted moves between states.
+
+    Parameters
+    ----------
+    counts : Counts
+        From `counting.count_moves`, with states ``cell * classes.number + class`` in the place of cells.
+    classes : VelocityClasses
+    grid : Grid
+        The cells.
+    lag_s : float
+        Length of a step [s].
+    estimator : {"literal", "per_step", "pooled"}
+        How counts become probabilities, but for the rows of whole cells, which are pooled.
+    fewest_samples : int
+        States with fewer samples are one state with the others of their cell [1].
+
+    Returns
+    -------
+    MarkovChain
+        Its states are those with enough samples, and after them one for each cell, which moves as all of the
+        cell's particles do: thin states, all with that row, need not be told apart. Its report holds how many
+        of the visited states were thin, and which share of all moves began in one of them: what falls back.
+
+    Raises
+    ------
+    DataError
+        The counts are not of these states.
+    """
+    n_states = grid.n_cells * classes.number
+    if counts.moves.shape != (n_states, n_states):
+        raise DataError(
+            f"counts of {counts.moves.shape[0]} states, {n_states} (cells times classes) expected"
+        )
+    cell = np.arange(n_states, dtype=np.int32) // np.int32(classes.number)
+    visits = counts.visits
+    kept = np.flatnonzero(visits >= max(fewest_samples, 1)).astype(np.int64)
+    place = kept.size + cell.astype(np.int64)
+    place[kept] = np.arange(kept.size)
+    onto = _ones(np.arange(n_states), place, (n_states, kept.size + grid.n_cells))
+    of_cells = _ones(cell, np.arange(n_states), (grid.n_cells, n_states)) @ counts.moves @ onto
+    shares = (transition_matrix(counts, estimator, False)[kept] @ onto, _shares(of_cells, kept.size))
+    matrix, returned = sparse.csr_array(sparse.vstack(shares, format="csr")), np.zeros(0, np.int64)
+    if estimator != "literal":
+        # Each move once: those of thin states in the rows of their cells.
+        moves = sparse.csr_array(onto.T @ counts.moves @ onto)
+        matrix, returned = open_classes(matrix, replace(counts, moves=moves))
+    index = (matrix.indices.astype(np.int32), matrix.indptr.astype(np.int32))
+    matrix = sparse.csr_array((matrix.data, *index), shape=matrix.shape)
+    matrix.sort_indices()
+    seen = float((visits > 0).sum())
+    report = {
+        "states_1": seen,
+        "thin_state_share_1": 1 - kept.size / seen,
+        "fallback_share_1": 1 - float(visits[kept].sum() / visits.sum()),
+        "leak_1": leak(counts) if estimator == "literal" else 0.0,
+        "states_returned_1": float(returned.size),
+        "moves_1": float(visits.sum()),
+        "entries_1": float(matrix.nnz),
+    }
+    cells = np.concatenate((cell[kept], np.arange(grid.n_cells, dtype=np.int32)))
+    return MarkovChain(
+        "velocity_class", grid, counts.lag, lag_s, matrix, cells, 1, kept, kept.size, report, classes
+    )
+
+
+def _states(
+    frames: Frames, grid: Grid, classes: Sequence[int], back: int
+) -> tuple[VelocityClasses, NDArray[np.int32]]:
+    """Classes of a window, and the state of each particle in each frame that ``back`` lead up to."""
+    edges = quantile_classes(frames, classes, back)
+    if grid.n_cells * edges.number > np.iinfo(np.int32).max:
+        raise DataError(f"{grid.n_cells} cells by {edges.number} classes: state numbers must fit in int32")
+    states = edges.of(frames)
+    for now, cells in zip(states, frames.cells[back:], strict=True):
+        now += np.int32(edges.number) * np.asarray(cells)
+    return edges, states
+
+
+def _ones(
+    rows: NDArray[np.integer], columns: NDArray[np.integer], shape: tuple[int, int]
+) -> sparse.csr_array:
+    """Matrix of ones at some places, which adds up the states that share a row or a column."""
+    return sparse.csr_array(sparse.coo_array((np.ones(rows.size, np.int64), (rows, columns)), shape=shape))
+
+
+def _shares(moves: sparse.csr_array, first: int) -> sparse.csr_array:
+    """Shares of the moves of each cell; one never left stays in its own state, number ``first + cell``."""
+    total = np.asarray(moves.sum(axis=1)).ravel()
+    never = np.flatnonzero(total == 0)
+    stay = sparse.coo_array((np.ones(never.size), (never, first + never)), shape=moves.shape)
+    return sparse.csr_array(sparse.diags_array(1.0 / np.maximum(total, 1)) @ moves + stay)

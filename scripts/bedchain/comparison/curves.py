@@ -1,0 +1,93 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Mixing curves in long form (mixing.csv), and how two of them differ."""
+
+import numpy as np
+import pandas as pd
+from numpy.typing import NDArray
+
+from bedchain.errors import UserError
+from bedchain.measures.mixing import GROUPS
+
+
+def curves_of(table: pd.DataFrame, source: str, n_times: int) -> NDArray[np.float64]:
+    """Curves of one source of mixing.csv.
+
+    Parameters
+    ----------
+    table : DataFrame
+        time_s, source, direction, group, fraction_remaining_1.
+    source : str
+    n_times : int
+        Times that the curves must have.
+
+    Returns
+    -------
+    (n_times, 4) ndarray
+        In the order of `mixing.GROUPS` [1].
+
+    Raises
+    ------
+    UserError
+        The source is missing, or has other times.
+    """
+    rows = table[table["source"] == source]
+    columns = [rows[rows["group"] == group].sort_values("time_s") for _, group in GROUPS]
+    if {len(column) for column in columns} != {n_times}:
+        raise UserError(
+            f"{source}: {len(columns[0])} times, {n_times} expected; delete its mixing.csv and run again"
+        )
+    return np.column_stack([column["fraction_remaining_1"] for column in columns])
+
+
+def curve_table(times_s: np.ndarray, source: str, remaining: np.ndarray) -> pd.DataFrame:
+    """Curves of one source as rows of mixing.csv.
+
+    Parameters
+    ----------
+    times_s : (n_times,) ndarray
+        [s].
+    source : str
+        ``dem``, a model, or a model with ``_monte_carlo``.
+    remaining : (n_times, 4) ndarray
+        Share of each group of `mixing.GROUPS` that is on its side [1].
+
+    Returns
+    -------
+    DataFrame
+        time_s, source, direction, group, fraction_remaining_1.
+    """
+    parts = [
+        pd.DataFrame(
+            {
+                "time_s": times_s,
+                "source": source,
+                "direction": direction,
+                "group": group,
+                "fraction_remaining_1": remaining[:, column],
+            }
+        )
+        for column, (direction, group) in enumerate(GROUPS)
+    ]
+    return pd.concat(parts, ignore_index=True)
+
+
+def curve_errors(model: np.ndarray, dem: np.ndarray) -> dict[str, np.ndarray]:
+    """Numbers that sum up how curves differ from the DEM's.
+
+    Parameters
+    ----------
+    model : (..., n_times, 4) ndarray
+        Share of each group on its side [1].
+    dem : (n_times, 4) ndarray
+
+    Returns
+    -------
+    dict of str to (..., 4) ndarray
+        error_signed, error_rms, crossed_end [1].
+    """
+    error = model - dem
+    return {
+        "error_signed": error.mean(axis=-2),
+        "error_rms": np.sqrt((error**2).mean(axis=-2)),
+        "crossed_end": 1 - model[..., -1, :],
+    }

@@ -1,0 +1,189 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""What a bed says of its chains, as rows of one long table: diagnostics.csv."""
+
+from collections.abc import Iterable, Sequence
+from typing import Any
+
+import numpy as np
+import pandas as pd
+from numpy.typing import NDArray
+
+from bedchain.chains import dynamic, static
+from bedchain.chains.counting import count_moves, count_pairs
+from bedchain.chains.estimators import ESTIMATORS, estimated_rows, visited_density
+from bedchain.chains.markov_chain import MarkovChain
+from bedchain.chains.matrix_analysis import mixing_time
+from bedchain.chains.passage import arrived, passage_time, residence_in_cells
+from bedchain.measures.batch import total_variation
+from bedchain.measures.dispersion import dispersion_by_height
+from bedchain.measures.mixing import lacey_index
+from bedchain.trajectory.frames import Frames
+from bedchain.trajectory.grid import Grid
+
+Row = dict[str, Any]
+COLUMNS = (
+    *("quantity", "source", "lag_s", "time_s", "height_m", "part"),
+    *("value", "unit", "ci_low", "ci_high"),
+)
+# a variance of fewer displacements says nothing of a layer
+FEWEST_DISPLACEMENTS = 100
+# the groups whose spreading Lacey's index follows, by direction
+FOLLOWED = {"radial": 0, "axial": 2}
+
+
+def row(quantity: str, source: str, value: float, unit: str = "1", **where: Any) -> Row:
+    """One row of diagnostics.csv.
+
+    Parameters
+    ----------
+    quantity, source : str
+    value : float
+        In ``unit``.
+    unit : str
+    **where
+        Any of lag_s, time_s, height_m, part (group, direction, estimator, number), ci_low, ci_high.
+
+    Returns
+    -------
+    dict
+    """
+    empty = dict.fromkeys(COLUMNS, np.nan) | {"part": ""}
+    return empty | {"quantity": quantity, "source": source, "value": float(value), "unit": unit} | where
+
+
+def table(rows: Iterable[Row]) -> pd.DataFrame:
+    """Rows as a table with the columns of diagnostics.csv."""
+    return pd.DataFrame(list(rows), columns=list(COLUMNS))
+
+
+def estimator_rows(frames: Frames, grid: Grid, lag: int, models: Sequence[str]) -> list[Row]:
+    """Row sums, leak and long-run density of each estimator, for the static and the dynamic chain.
+
+    Parameters
+    ----------
+    frames : Frames
+        The learning window.
+    grid : Grid
+    lag : int
+        Frames in a step.
+    models : sequence of str
+        Others than ``static`` and ``dynamic`` are passed over.
+
+    Returns
+    -------
+    list of dict
+        row_sum_error, leak, long_run_total_variation from the frames' mean density; part = estimator.
+    """
+    single = count_moves(frames.cells, grid.n_cells, lag)
+    found = {"static": static.compare_estimators(single)} if "static" in models else {}
+    if "dynamic" in models:
+        double = count_pairs(frames.cells, grid.n_cells, lag)
+        visited = double.visits > 0
+        found["dynamic"] = {}
+        for estimator in ESTIMATORS:
+            sums = np.asarray(estimated_rows(double, estimator).sum(axis=1)).ravel()[visited]
+            chain = dynamic.from_counts(double, single, grid, lag * frames.interval_s, estimator)
+            found["dynamic"][estimator] = chain.report | {
+                "row_sum_error_1": float(np.abs(sums - 1).max()),
+                "long_run_total_variation_1": total_variation(
+                    chain.long_run_density(frames), visited_density(single)
+                ),
+            }
+    return [
+        row(name, model, values[f"{name}_1"], lag_s=lag * frames.interval_s, part=estimator)
+        for model, by_estimator in found.items()
+        for estimator, values in by_estimator.items()
+        for name in ("row_sum_error", "leak", "long_run_total_variation")
+    ]
+
+
+def time_rows(chain: MarkovChain, start: NDArray[np.float64], least_share: float, top: int) -> list[Row]:
+    """Mixing time, residence times and time of passage from the bottom to the top.
+
+    Parameters
+    ----------
+    chain : MarkovChain
+    start : (n_states,) array
+        Particles in each state at the start [1].
+    least_share : float
+        Cells that hold less in the long run do not count for the residence times [1]: one particle.
+    top : int
+        Row of cells to reach from the bottom row.
+
+    Returns
+    -------
+    list of dict
+        mixing_time; residence_time (part: mean over the particles, shortest and longest of the cells);
+        first_passage_time, left out where some particles never get there.
+    """
+    residence, held = residence_in_cells(chain, start)
+    usual = (held >= least_share) & np.isfinite(residence)
+    mean = float((residence[usual] * held[usual]).sum() / held[usual].sum())
+    of = {"mean": mean, "shortest": residence[usual].min(), "longest": residence[usual].max()}
+    where = {"lag_s": chain.lag_s}
+    rows = [row("mixing_time", chain.name, mixing_time(chain.matrix, chain.lag_s), "s", **where)]
+    rows += [row("residence_time", chain.name, value, "s", part=part, **where) for part, value in of.items()]
+    passage = passage_time(chain, start, top)
+    if np.isfinite(passage):
+        height = top * chain.grid.cell_height_m
+        rows.append(row("first_passage_time", chain.name, passage, "s", height_m=height, **where))
+    return rows
+
+
+def arrival_row(source: str, frames: Frames, grid: Grid, top: int) -> Row:
+    """Share of the bottom row's particles that have been in a row or above it by the end of the frames."""
+    share = arrived(frames.cells, grid, top)[-1]
+    length = float(frames.times_s[-1] - frames.times_s[0])
+    return row("first_passage_share", source, share, time_s=length, height_m=top * grid.cell_height_m)
+
+
+def dispersion_rows(source: str, frames: Frames, grid: Grid, lags: Sequence[int]) -> list[Row]:
+    """Dispersion coefficients of each row of cells, at several lags.
+
+    Parameters
+    ----------
+    source : str
+    frames : Frames
+        Of the DEM, or of a chain with particles in the middles of their cells.
+    grid : Grid
+    lags : sequence of int
+        Frames in a displacement.
+
+    Returns
+    -------
+    list of dict
+        dispersion_x and dispersion_z [m2/s], where enough displacements begin.
+    """
+    rows = []
+    for lag in lags:
+        lag_s = lag * frames.interval_s
+        found = dispersion_by_height(frames.x_m, frames.z_m, grid.z_edges_m, lag, lag_s)
+        for layer in np.flatnonzero(found.displacements >= FEWEST_DISPLACEMENTS):
+            for column, axis in enumerate("xz"):
+                value, where = found.dispersion_m2_s[layer, column], {"height_m": found.height_m[layer]}
+                rows.append(row(f"dispersion_{axis}", source, value, "m2/s", lag_s=lag_s, **where))
+    return rows
+
+
+def lacey_rows(source: str, times_s: NDArray[np.float64], numbers: NDArray[np.int64]) -> list[Row]:
+    """Lacey's index of the left and of the low particles over time.
+
+    Parameters
+    ----------
+    source : str
+    times_s : (n_times,) array
+        [s].
+    numbers : (n_times, 4, n_cells) array
+        Particles of each group of `mixing.GROUPS` in each cell [1].
+
+    Returns
+    -------
+    list of dict
+        lacey_index, part = radial or axial.
+    """
+    return [
+        row("lacey_index", source, lacey_index(now[group], now[group] + now[group + 1]), time_s=time,
+            part=direction)
+        for direction, group in FOLLOWED.items()
+        for time, now in zip(times_s, numbers, strict=True)
+    ]  # fmt: skip

@@ -1,0 +1,120 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Segments of a drum: LIGGGHTS without OpenFOAM or bedFoam, frames and records as of a bed with gas."""
+
+import time
+from pathlib import Path
+
+import numpy as np
+import pandas as pd
+
+from bedchain.dem.processes import run_deck
+from bedchain.dem.segments import (
+    RESTART,
+    Run,
+    Segment,
+    check_frames,
+    frame_columns,
+    read_parameters,
+    write_record,
+)
+from bedchain.errors import UserError
+from bedchain.files import whole_folder
+from bedchain.trajectory.dumps import read_dump
+
+FILL, TUMBLE, WALLS = "drum/in.fill", "drum/in.tumble", "drum/walls.in"
+SERIES = "bed_series.csv"
+SERIES_COLUMNS = ["time_s", "mean_height_m", "surface_angle_rad", "kinetic_energy_J", "particles_1"]
+
+
+def turns(case: Path) -> bool:
+    """Whether ``results/<case>`` is a drum, by its ``parameters.lig``."""
+    return "drum_speed" in read_parameters(case / "parameters.lig")
+
+
+def input_files(case: Path, decks: Path) -> list[Path]:
+    """Every file that a drum's run depends on, in a fixed order: numbers and decks, no solver of ours."""
+    blocks = [decks / "include" / name for name in ("style.in", "bed.in")]
+    return [case / "parameters.lig", *(decks / name for name in (FILL, TUMBLE, WALLS)), *blocks]
+
+
+def run_segment(run: Run, index: int, steps: tuple[int, int], previous: Path, decks: Path) -> Segment:
+    """Turn the drum over one segment.
+
+    Parameters
+    ----------
+    run : Run
+    index : int
+        Of the segment, from 1.
+    steps : (int, int)
+        First and last step of the particles.
+    previous : Path
+        Folder with the restart to go on from.
+    decks : Path
+        ``liggghts_inputs``.
+
+    Returns
+    -------
+    Segment
+        Its record, already in its folder, with ``bed_series.csv``.
+
+    Raises
+    ------
+    UserError
+        LIGGGHTS is not there or stops: its own words, and the last good state.
+    """
+    parameters = read_parameters(run.case / "parameters.lig")
+    name, began = f"segment_{index:04d}", time.monotonic()
+    given = {
+        "decks": decks, "parameters": run.case / "parameters.lig", "restart": previous / RESTART,
+        "start_step": steps[0], "steps": steps[1] - steps[0],
+    }  # fmt: skip
+    with whole_folder(run.state / name) as part:
+        try:
+            run_deck(decks / TUMBLE, given | {"output": part}, part / "liggghts.log", run.ranks)
+        except UserError as error:
+            raise UserError(f"{error}\nlast good state: {previous / RESTART}") from None
+        check_frames(part, run, steps, int(parameters["frame_steps"]), str(parameters["dump_suffix"]))
+        drum_series(part, parameters).to_csv(part / SERIES, index=False, float_format="%.10g")
+        wall = time.monotonic() - began
+        segment = Segment(index, *steps, name, wall, wall, 0.0, 0.0)
+        write_record(part, segment)
+    step_s = float(parameters["dem_step"])
+    cost = wall / (step_s * (steps[1] - steps[0]))
+    print(
+        f"run_dem: {steps[1] * step_s:g} of {run.end_step * step_s:g} s simulated, "
+        f"{cost:.1f} s per simulated second, {cost * (run.end_step - steps[1]) * step_s:.0f} s left",
+        flush=True,
+    )
+    return segment
+
+
+def drum_series(folder: Path, parameters: dict[str, float | str]) -> pd.DataFrame:
+    """The bed as a whole in each frame of a segment.
+
+    Parameters
+    ----------
+    folder : Path
+        With the frames that the segment owns.
+    parameters : dict
+        Of `bedchain.segments.read_parameters`.
+
+    Returns
+    -------
+    DataFrame
+        time_s, mean_height_m, surface_angle_rad, kinetic_energy_J (of translation), particles_1, in order of
+        time. The angle is that of the centroid's radius to the vertical: the surface's, where that is plane.
+    """
+    columns, rows = frame_columns(parameters), []
+    radius, mass = float(parameters["width"]) / 2, particle_mass(parameters)
+    for file in folder.glob(f"frame_*.{parameters['dump_suffix']}"):
+        dump = read_dump(file, columns)
+        x, z, vx, vz = (dump.values[:, columns.index(name)] for name in ("x", "z", "vx", "vz"))
+        angle = np.arctan2(x.mean() - radius, radius - z.mean())
+        energy = mass / 2 * float(np.sum(vx**2 + vz**2))
+        rows.append((dump.step * float(parameters["dem_step"]), z.mean(), angle, energy, len(x)))
+    return pd.DataFrame(sorted(rows), columns=SERIES_COLUMNS)
+
+
+def particle_mass(parameters: dict[str, float | str]) -> float:
+    """Mass of a particle [kg]."""
+    return float(parameters["density"]) * np.pi / 6 * float(parameters["diameter"]) ** 3

@@ -1,0 +1,159 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""A gas field, read from the OpenFOAM case that a segment leaves, whole or cut for several ranks."""
+
+import tempfile
+from pathlib import Path
+from typing import Any, NamedTuple
+
+import numpy as np
+import pyvista
+
+from bedchain.errors import UserError
+from bedchain.files import read_arrays
+
+
+class GasField(NamedTuple):
+    """A scalar in the cells of the gas.
+
+    Attributes
+    ----------
+    time_s : float
+        [s].
+    x_m, z_m : (n_gas_cells,) ndarray
+        Centres of the gas cells [m].
+    values : (n_gas_cells,) ndarray
+        Of the field, in its own unit.
+    mesh : pyvista.DataSet
+        The cells themselves, with the field.
+    """
+
+    time_s: float
+    x_m: np.ndarray
+    z_m: np.ndarray
+    values: np.ndarray
+    mesh: Any
+
+
+def gas_near(manifest: dict[str, Any], folder: Path, name: str, time_s: float) -> GasField:
+    """A field of the gas at the moment nearest to a time that it was kept at.
+
+    Parameters
+    ----------
+    manifest : dict
+        Of the DEM run; one that was unpacked from an archive names the file of its gas.
+    folder : Path
+        Of the manifest.
+    name : str
+        ``voidage``.
+    time_s : float
+        Wanted time [s].
+
+    Returns
+    -------
+    GasField
+    """
+    if "gas" in manifest:
+        return archived_gas(folder / manifest["gas"], name, time_s)
+    case, _ = nearest_gas(manifest, folder, name, time_s)
+    return read_gas_field(case, name)
+
+
+def archived_gas(file: Path, name: str, time_s: float) -> GasField:
+    """A field out of the archived moments of the gas.
+
+    Parameters
+    ----------
+    file : Path
+        ``gas.npz``: times_s (n_times,); x_m, z_m (n_gas_cells,), row by row; fields (n_times, n_gas_cells).
+    name : str
+        Field, such as ``voidage``.
+    time_s : float
+        Wanted time [s].
+
+    Returns
+    -------
+    GasField
+    """
+    arrays = read_arrays(file)
+    moment = int(np.argmin(np.abs(arrays["times_s"] - time_s)))
+    x, z = np.unique(arrays["x_m"]), np.unique(arrays["z_m"])
+    # centres lie half a cell inside the walls
+    spacing = ((x[0] + x[-1]) / len(x), 1.0, (z[0] + z[-1]) / len(z))
+    mesh = pyvista.ImageData(dimensions=(len(x) + 1, 2, len(z) + 1), spacing=spacing, origin=(0.0, -0.5, 0.0))
+    values = np.asarray(arrays[name][moment], float)
+    mesh.cell_data[name] = values
+    return GasField(float(arrays["times_s"][moment]), arrays["x_m"], arrays["z_m"], values, mesh)
+
+
+def nearest_gas(manifest: dict[str, Any], folder: Path, name: str, time_s: float) -> tuple[Path, float]:
+    """The segment whose gas is still there and ends nearest to a time.
+
+    Parameters
+    ----------
+    manifest : dict
+        Of the DEM run; its segments' folders are relative to ``folder``.
+    folder : Path
+    name : str
+        Field that is wanted.
+    time_s : float
+        Wanted time [s].
+
+    Returns
+    -------
+    Path
+        OpenFOAM case.
+    float
+        Time of its end [s].
+
+    Raises
+    ------
+    UserError
+        No segment has the field.
+    """
+    found = [
+        (abs(segment["end_s"] - time_s), folder / segment["folder"] / "gas", float(segment["end_s"]))
+        for segment in manifest["segments"]
+        if any((folder / segment["folder"] / "gas").glob(f"**/{name}"))
+    ]
+    if not found:
+        raise UserError(f"{folder}: no segment has the gas field {name}; run run_dem again")
+    _, case, end_s = min(found)
+    return case, end_s
+
+
+def read_gas_field(case: Path, name: str) -> GasField:
+    """A cell field at the last time of an OpenFOAM case.
+
+    Parameters
+    ----------
+    case : Path
+        Its times lie in it, or in its folders processor0, processor1, ...
+    name : str
+        Field, such as ``voidage``.
+
+    Returns
+    -------
+    GasField
+
+    Raises
+    ------
+    UserError
+        The field is not there.
+    """
+    # the reader wants a file beside the case's folders; the case itself is the solver's and stays as it is
+    with tempfile.TemporaryDirectory() as temporary:
+        for part in case.iterdir():
+            (Path(temporary) / part.name).symlink_to(part.resolve())
+        marker = Path(temporary) / "gas.foam"
+        marker.touch()
+        reader = pyvista.POpenFOAMReader(str(marker))
+        reader.case_type = "decomposed" if (case / "processor0").exists() else "reconstructed"
+        reader.cell_to_point_creation = False
+        reader.set_active_time_value(reader.time_values[-1])
+        mesh: Any = reader.read()["internalMesh"]
+    if name not in mesh.cell_data:
+        raise UserError(f"{case} has no field {name} at {reader.time_values[-1]:g} s; run run_dem again")
+    centres = mesh.cell_centers().points
+    return GasField(
+        float(reader.time_values[-1]), centres[:, 0], centres[:, 2], np.asarray(mesh.cell_data[name]), mesh
+    )

@@ -1,0 +1,107 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Further realisations of a bed: the state of the main run at one time, each velocity changed a little."""
+
+from pathlib import Path
+from typing import Any
+
+from bedchain.dem.gas_case import copy_last_state, cut_for_ranks
+from bedchain.dem.processes import run_deck
+from bedchain.dem.segments import RESTART, Run
+from bedchain.errors import UserError
+from bedchain.files import whole_folder
+from bedchain.physics.whole_numbers import is_prime
+
+DECK = "in.perturb"
+PERTURBED = "perturbed"
+# rms 0.003 m/s, 1 % of the particles' rms velocity in the short bed: particles are a diameter apart after
+# 0.08 s, their velocities unlike (correlation below 1/e) after 0.6 s
+KICK_M_S = 5e-3
+# repeats have seeds so far apart that the next prime is never that of their neighbour
+SEED_SPACING = 1000
+# what LIGGGHTS takes
+SMALLEST_SEED, LARGEST_SEED = 10007, 2**31 - 1
+
+
+def repeat_folder(case: Path, number: int) -> Path:
+    """Where a repeat's results are: ``results/<case>/repeats/<number>``."""
+    return case / "repeats" / str(number)
+
+
+def kick_seed(seed: int, number: int) -> int:
+    """Seed of a repeat's perturbation, a prime: LIGGGHTS takes no other.
+
+    Parameters
+    ----------
+    seed : int
+        Of the case.
+    number : int
+        Of the repeat, from 1.
+    """
+    span = LARGEST_SEED - SEED_SPACING - SMALLEST_SEED
+    wanted = SMALLEST_SEED + (seed + SEED_SPACING * number - SMALLEST_SEED) % span
+    return next(prime for prime in range(wanted, LARGEST_SEED + 1) if is_prime(prime))
+
+
+def segment_that_ends(manifest: dict[str, Any], time_s: float) -> Path:
+    """Folder of the segment of a run that ends at a time.
+
+    Parameters
+    ----------
+    manifest : dict
+        Of the run, ``dem.json``.
+    time_s : float
+        [s].
+
+    Returns
+    -------
+    Path
+        Relative to the folder of ``dem.json``.
+
+    Raises
+    ------
+    UserError
+        No segment ends there.
+    """
+    ends = {float(segment["end_s"]): Path(segment["folder"]) for segment in manifest["segments"]}
+    nearest = min(ends, key=lambda end: abs(end - time_s))
+    if abs(nearest - time_s) > 0.5 * float(manifest["dem_step_s"]):
+        raise UserError(
+            f"no segment of the run ends at {time_s:g} s, where the repeats start (comparison.start_s): take "
+            f"{nearest:g} s, the nearest end, or a time.segment_s that divides {time_s:g} s, and delete "
+            "the run's segments from there on"
+        )
+    return ends[nearest]
+
+
+def perturb(run: Run, segment: Path, decks: Path, seed: int, speed_m_s: float = KICK_M_S) -> None:
+    """Leave a perturbed copy of a segment's last state, of particles and gas, as a run's origin.
+
+    The segment may be of a run on other ranks.
+
+    Parameters
+    ----------
+    run : Run
+        Its ``state`` gets the folder ``origin``; one that is there stays.
+    segment : Path
+        Folder with ``particles.restart`` and ``gas``.
+    decks : Path
+        Folder of ``in.perturb``.
+    seed : int
+        A prime above 10000.
+    speed_m_s : float
+        Each velocity along x and along z is changed by up to this much, evenly distributed [m/s].
+    """
+    if (run.state / run.origin).exists():
+        return
+    with whole_folder(run.state / run.origin) as part:
+        copy_last_state(segment / "gas", part / "gas")
+        cut_for_ranks(part / "gas", segment / "gas", run.ranks)
+        variables = {
+            "decks": decks,
+            "parameters": run.case / "parameters.lig",
+            "restart": segment / RESTART,
+            "output": part,
+            "kick_seed": seed,
+            "kick_speed": speed_m_s,
+        }
+        run_deck(decks / DECK, variables, part / "liggghts.log", run.ranks)

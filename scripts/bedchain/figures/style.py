@@ -1,0 +1,160 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""One style for all figures: a journal's column widths, vector output, colours that all readers can tell."""
+
+from collections.abc import Iterator
+from contextlib import contextmanager
+from pathlib import Path
+from typing import Any
+
+import matplotlib
+import matplotlib.pyplot as plt
+import numpy as np
+from matplotlib.axes import Axes
+from matplotlib.collections import EllipseCollection, QuadMesh
+from matplotlib.colors import Colormap, Normalize
+from matplotlib.figure import Figure
+
+from bedchain.files import complete
+from bedchain.trajectory.grid import Grid
+
+matplotlib.use("Agg")
+
+
+SINGLE_COLUMN_IN = 3.5
+DOUBLE_COLUMN_IN = 7.2
+LINE_COLOUR = "#555555"
+EMPTY_COLOUR = "#ffffff"
+STYLE: Any = {
+    "font.family": "DejaVu Sans",
+    "font.size": 8,
+    "axes.titlesize": 8,
+    "axes.labelsize": 8,
+    "xtick.labelsize": 7,
+    "ytick.labelsize": 7,
+    "legend.fontsize": 7,
+    "legend.frameon": False,
+    "axes.linewidth": 0.6,
+    "axes.spines.top": False,
+    "axes.spines.right": False,
+    "xtick.major.width": 0.6,
+    "ytick.major.width": 0.6,
+    "xtick.major.size": 2.5,
+    "ytick.major.size": 2.5,
+    "lines.linewidth": 1.2,
+    "pdf.fonttype": 42,
+    "svg.fonttype": "none",
+    "figure.constrained_layout.use": True,
+    "image.cmap": "cividis",
+}
+
+
+@contextmanager
+def figure_style() -> Iterator[None]:
+    """The style of every figure, for the time of a ``with`` block; figures left open are closed after it."""
+    with matplotlib.rc_context(STYLE):
+        try:
+            yield
+        finally:
+            plt.close("all")
+
+
+def save_figure(figure: Figure, png: Path, pdf: Path, resolution_dpi: int) -> None:
+    """Save a figure in both forms, each complete or not at all.
+
+    Parameters
+    ----------
+    figure : Figure
+    png, pdf : Path
+        Files to make; dates are left out, so that the same data make the same file.
+    resolution_dpi : int
+        Of the png, and of pixels inside the pdf [dots per inch].
+    """
+    for target, metadata in ((png, {"Software": None}), (pdf, {"CreationDate": None})):
+        with complete(target) as temporary:
+            figure.savefig(temporary, dpi=resolution_dpi, metadata=metadata)
+
+
+def map_colours(name: str) -> Colormap:
+    """Colour map whose lowest end, nothing there, is the white of the page."""
+    return plt.get_cmap(name).with_extremes(bad=EMPTY_COLOUR)
+
+
+def draw_cells(axes: Axes, values: np.ndarray, grid: Grid, norm: Normalize, colours: Colormap) -> QuadMesh:
+    """Values of cells as a map in the bed's own proportions; cells with 0 stay white.
+
+    Parameters
+    ----------
+    axes : Axes
+    values : (n_cells,) ndarray
+        One value a cell, in the order of cell numbers.
+    grid : Grid
+    norm : Normalize
+    colours : Colormap
+
+    Returns
+    -------
+    QuadMesh
+        For a colour bar.
+    """
+    table = np.ma.masked_less_equal(values.reshape(grid.rows, grid.columns), 0)
+    mesh = axes.pcolormesh(
+        grid.x_edges_m, grid.z_edges_m, table, norm=norm, cmap=colours, rasterized=True, linewidth=0
+    )
+    axes.set_aspect("equal")
+    return mesh
+
+
+def draw_particles(
+    axes: Axes, x: np.ndarray, z: np.ndarray, diameter: float, **style: object
+) -> EllipseCollection:
+    """Particles as circles of their true size.
+
+    Parameters
+    ----------
+    axes : Axes
+    x, z : (n_particles,) ndarray
+        Centres [m].
+    diameter : float
+        Diameter [m].
+    **style
+        Passed on to Matplotlib.
+
+    Returns
+    -------
+    EllipseCollection
+    """
+    size = np.full(len(x), diameter)
+    circles = EllipseCollection(
+        size, size, np.zeros(len(x)), units="xy", offsets=np.column_stack([x, z]),
+        offset_transform=axes.transData, rasterized=len(x) > 2000, **style,
+    )  # fmt: skip
+    axes.add_collection(circles)
+    axes.set_aspect("equal")
+    return circles
+
+
+def close_frame(axes: Axes, open_top: bool = True) -> None:
+    """Walls of the bed as lines: left, right and bottom, and the top where it is shown."""
+    for side, shown in (("left", True), ("bottom", True), ("right", True), ("top", not open_top)):
+        axes.spines[side].set_visible(shown)
+        axes.spines[side].set_color(LINE_COLOUR)
+
+
+def shown_height(cells: np.ndarray, grid: Grid, margin_rows: int = 1) -> float:
+    """Height up to which something is to be seen, rounded up to a row [m].
+
+    Parameters
+    ----------
+    cells : integer array
+        Numbers of the cells that hold something.
+    grid : Grid
+    margin_rows : int
+        Empty rows kept above.
+
+    Returns
+    -------
+    float
+        At most the bed's height [m].
+    """
+    top = int(cells.max()) // grid.columns + 1 + margin_rows
+    return min(top, grid.rows) * grid.cell_height_m

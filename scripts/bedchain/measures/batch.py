@@ -1,0 +1,83 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Where a batch of particles is: the batch itself, and its distribution over the cells."""
+
+import numpy as np
+from numpy.typing import NDArray
+
+from bedchain.errors import UserError
+from bedchain.trajectory.cell_store import CellStore, frame_at
+from bedchain.trajectory.grid import Grid
+
+
+def batch_of(grid: Grid, cells: np.ndarray, height_m: float) -> np.ndarray:
+    """The particles of the lowest rows of cells.
+
+    Parameters
+    ----------
+    grid : Grid
+    cells : (n_particles,) integer array
+        Cell of each particle.
+    height_m : float
+        Height of the batch [m], rounded to whole rows, at least one.
+
+    Returns
+    -------
+    (n_particles,) ndarray of bool
+
+    Raises
+    ------
+    UserError
+        No particle is there.
+    """
+    rows = max(1, round(height_m / grid.cell_height_m))
+    batch = cells < rows * grid.columns
+    if not batch.any():
+        raise UserError(f"no particle is in the lowest {rows} rows of cells: raise figures.batch_height_m")
+    return np.asarray(batch)
+
+
+def share_by_cell(cells: np.ndarray, n_cells: int) -> np.ndarray:
+    """Share of the particles in each cell.
+
+    Parameters
+    ----------
+    cells : (n_particles,) integer array
+    n_cells : int
+
+    Returns
+    -------
+    (n_cells,) ndarray
+        Sum 1 [1].
+    """
+    return np.asarray(np.bincount(cells, minlength=n_cells) / cells.size)
+
+
+def observed_shares(
+    store: CellStore, moments_s: np.ndarray, start_s: float, batch_height_m: float
+) -> np.ndarray:
+    """The DEM's own distribution of the batch.
+
+    Parameters
+    ----------
+    store : CellStore
+    moments_s : (n_moments,) ndarray
+        After the start [s].
+    start_s : float
+        When the batch is put in [s].
+    batch_height_m : float
+        Height of the batch [m].
+
+    Returns
+    -------
+    (n_moments, n_cells) ndarray
+        Shares of the batch [1].
+    """
+    start = frame_at(store.times_s, start_s)
+    batch = batch_of(store.grid, np.asarray(store.cells[start]), batch_height_m)
+    frames = [frame_at(store.times_s, store.times_s[start] + moment) for moment in moments_s]
+    return np.array([share_by_cell(store.cells[frame][batch], store.grid.n_cells) for frame in frames])
+
+
+def total_variation(one: NDArray[np.float64], two: NDArray[np.float64]) -> float:
+    """Total-variation distance of two distributions over cells, each brought to sum 1; 0 to 1 [1]."""
+    return float(0.5 * np.abs(one / one.sum() - two / two.sum()).sum())

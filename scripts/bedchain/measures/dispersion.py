@@ -1,0 +1,78 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""How fast particles spread, by height: drift and dispersion coefficients from displacements."""
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from bedchain.errors import DataError
+
+
+@dataclass(frozen=True)
+class Dispersion:
+    """Drift and dispersion of the particles that start in each layer of the bed.
+
+    Parameters
+    ----------
+    height_m : (n_layers,) array
+        Middle of each layer [m].
+    displacements : (n_layers,) int64 array
+        Displacements seen [1].
+    drift_m_s : (n_layers, 2) array
+        Mean velocity along x and z [m/s]; NaN in a layer without particles.
+    dispersion_m2_s : (n_layers, 2) array
+        Variance of the displacement over twice the lag, along x and z [m2/s].
+    """
+
+    height_m: NDArray[np.float64]
+    displacements: NDArray[np.int64]
+    drift_m_s: NDArray[np.float64]
+    dispersion_m2_s: NDArray[np.float64]
+
+
+def dispersion_by_height(
+    x_m: NDArray[np.floating], z_m: NDArray[np.floating], edges_m: NDArray[np.float64], lag: int, lag_s: float
+) -> Dispersion:
+    """Drift and dispersion coefficients of layers, from displacements over one lag.
+
+    Parameters
+    ----------
+    x_m, z_m : (n_frames, n_particles) array
+        Positions [m].
+    edges_m : (n_layers + 1,) array
+        Rising heights that bound the layers [m]; particles outside them do not count.
+    lag : int
+        Frames in a displacement.
+    lag_s : float
+        The same [s].
+
+    Returns
+    -------
+    Dispersion
+        A displacement counts for the layer that it starts in.
+
+    Raises
+    ------
+    DataError
+        No displacement fits into the frames.
+    """
+    if not 1 <= lag < len(x_m):
+        raise DataError(
+            f"{len(x_m)} frames hold no displacement over {lag} frames: widen the window or cut the lag"
+        )
+    n_layers = len(edges_m) - 1
+    number = np.zeros(n_layers + 2)
+    sums, squares = np.zeros((2, n_layers + 2)), np.zeros((2, n_layers + 2))
+    for frame in range(len(x_m) - lag):
+        layer = np.digitize(z_m[frame], edges_m)
+        number += np.bincount(layer, minlength=n_layers + 2)
+        for axis, place in enumerate((x_m, z_m)):
+            step = np.subtract(place[frame + lag], place[frame], dtype=np.float64)
+            sums[axis] += np.bincount(layer, step, n_layers + 2)
+            squares[axis] += np.bincount(layer, step**2, n_layers + 2)
+    seen = np.where(number > 0, number, np.nan)[1:-1]
+    mean = sums[:, 1:-1] / seen
+    variance = np.maximum(squares[:, 1:-1] / seen - mean**2, 0.0)
+    middle = 0.5 * (edges_m[:-1] + edges_m[1:])
+    return Dispersion(middle, number[1:-1].astype(np.int64), (mean / lag_s).T, (variance / (2 * lag_s)).T)

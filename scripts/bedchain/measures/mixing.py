@@ -1,0 +1,228 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Mixing of marked groups: how many are still on their side, and how evenly they are spread."""
+
+from typing import Any
+
+import numpy as np
+from numba import njit
+from numpy.typing import NDArray
+
+from bedchain.errors import DataError
+from bedchain.trajectory.grid import Grid
+
+# (direction, group) in the order of every array with an axis of 4 here.
+GROUPS = (("radial", "left"), ("radial", "right"), ("axial", "low"), ("axial", "up"))
+
+
+def sides(
+    x_m: NDArray[np.floating], z_m: NDArray[np.floating], split_x_m: float, split_z_m: float
+) -> NDArray[np.bool_]:
+    """Which particles are left, right, low and up.
+
+    Parameters
+    ----------
+    x_m, z_m : (..., n_particles) array
+        Positions [m].
+    split_x_m, split_z_m : float
+        Lines between left and right, and between low and up [m]; left and low are strictly below them.
+
+    Returns
+    -------
+    (4, ..., n_particles) bool array
+        In the order of `GROUPS`.
+    """
+    left, low = x_m < split_x_m, z_m < split_z_m
+    return np.stack((left, ~left, low, ~low))
+
+
+def side_shares(grid: Grid, split_x_m: float, split_z_m: float) -> NDArray[np.float64]:
+    """Share of each cell that lies on each side.
+
+    A line that cuts through a column (or row) of cells gives each side its part of the cell's area: particles
+    count as evenly spread in their cell, which is all that a chain of cells knows of them.
+
+    Parameters
+    ----------
+    grid : Grid
+        The cells.
+    split_x_m, split_z_m : float
+        Lines between left and right, and between low and up [m]; inside the bed.
+
+    Returns
+    -------
+    (4, n_cells) array
+        In the order of `GROUPS`; left + right = low + up = 1.
+
+    Raises
+    ------
+    DataError
+        A line lies outside the bed.
+    """
+    for name, split, size in (("x", split_x_m, grid.width_m), ("z", split_z_m, grid.height_m)):
+        if not 0 < split < size:
+            raise DataError(
+                f"the split at {name} = {split:g} m leaves one side empty: choose 0 to {size:g} m"
+            )
+    left = np.clip((split_x_m - grid.x_edges_m[:-1]) / grid.cell_width_m, 0.0, 1.0)
+    low = np.clip((split_z_m - grid.z_edges_m[:-1]) / grid.cell_height_m, 0.0, 1.0)
+    # A line on an edge, up to rounding, cuts no cell.
+    left, low = (np.where(np.abs(s - np.round(s)) < 1e-9, np.round(s), s) for s in (left, low))
+    of_left, of_low = np.tile(left, grid.rows), np.repeat(low, grid.columns)
+    return np.stack((of_left, 1 - of_left, of_low, 1 - of_low))
+
+
+def remaining_from_positions(
+    x_m: NDArray[np.floating], z_m: NDArray[np.floating], split_x_m: float, split_z_m: float
+) -> NDArray[np.float64]:
+    """Share of each group, marked in the first frame, that is on its side in each frame (Fig. 5, DEM).
+
+    Parameters
+    ----------
+    x_m, z_m : (n_frames, n_particles) array
+        Positions [m].
+    split_x_m, split_z_m : float
+        As `sides`.
+
+    Returns
+    -------
+    (n_frames, 4) array
+        1 in the first frame; NaN for a group without particles.
+    """
+    marked = sides(np.asarray(x_m[0]), np.asarray(z_m[0]), split_x_m, split_z_m)
+    remaining = np.empty((len(x_m), 4))
+    for frame in range(len(x_m)):
+        now = sides(np.asarray(x_m[frame]), np.asarray(z_m[frame]), split_x_m, split_z_m)
+        remaining[frame] = _mean_of(marked, (marked & now).sum(axis=1))
+    return remaining
+
+
+def remaining_over_starts(
+    x_m: NDArray[np.floating],
+    z_m: NDArray[np.floating],
+    split_x_m: float,
+    split_z_m: float,
+    steps: int,
+    lag: int = 1,
+) -> NDArray[np.float64]:
+    """`remaining_from_positions` from every frame that ``steps`` lags follow: the spread of the DEM itself.
+
+    Returns
+    -------
+    (n_starts, steps + 1, 4) array
+        Particles are marked anew at each start.
+
+    Raises
+    ------
+    DataError
+        The window is shorter than the steps.
+    """
+    n_starts = len(x_m) - steps * lag
+    if n_starts < 1:
+        raise DataError(
+            f"{len(x_m)} frames hold no {steps} steps of {lag} frames: widen the window or take fewer"
+        )
+    now = sides(np.asarray(x_m), np.asarray(z_m), split_x_m, split_z_m)
+    curves = np.empty((n_starts, steps + 1, 4))
+    for step in range(steps + 1):
+        later = now[:, step * lag : step * lag + n_starts]
+        still = (now[:, :n_starts] & later).sum(axis=2)
+        size = now[:, :n_starts].sum(axis=2)
+        curves[:, step] = np.divide(still, size, out=np.full(size.shape, np.nan), where=size > 0).T
+    return curves
+
+
+def remaining_from_cells(
+    cells: NDArray[np.int32], marked: NDArray[np.bool_], shares: NDArray[np.float64]
+) -> NDArray[np.float64]:
+    """The same curves from cell numbers alone, as a chain of cells would see them.
+
+    Parameters
+    ----------
+    cells : (n_frames, n_particles) int array
+        Cell of each particle.
+    marked : (4, n_particles) bool array
+        Groups, in the order of `GROUPS` (from `sides`).
+    shares : (4, n_cells) array
+        From `side_shares`.
+
+    Returns
+    -------
+    (n_frames, 4) array
+        Less than 1 in the first frame where a split cuts through cells.
+    """
+    remaining = np.empty((len(cells), 4))
+    for frame in range(len(cells)):
+        remaining[frame] = _mean_of(marked, _on_side(np.asarray(cells[frame]), marked, shares))
+    return remaining
+
+
+@njit(cache=True)
+def _on_side(cells, marked, shares):  # type: ignore[no-untyped-def]
+    """Sum over the particles of each group of the share of their cell that is on the group's side."""
+    total = np.zeros(marked.shape[0])
+    for group in range(marked.shape[0]):
+        for particle in range(cells.size):
+            if marked[group, particle]:
+                total[group] += shares[group, cells[particle]]
+    return total
+
+
+def _mean_of(marked: NDArray[np.bool_], total: NDArray[np.generic]) -> NDArray[np.float64]:
+    size = marked.sum(axis=1)
+    return np.divide(total, size, out=np.full(4, np.nan), where=size > 0)
+
+
+def group_shares(marked: NDArray[np.bool_]) -> NDArray[np.float64]:
+    """Share of all particles in each group, (n_groups,) [1]."""
+    return np.asarray(marked.mean(axis=1))
+
+
+def marked_histogram(
+    states: NDArray[np.integer], marked: NDArray[np.bool_], n_states: int
+) -> NDArray[np.int64]:
+    """Particles of each group in each state.
+
+    Parameters
+    ----------
+    states : (n_particles,) int array
+        State (or cell) of each particle.
+    marked : (n_groups, n_particles) bool array
+        Groups.
+    n_states : int
+        Number of states.
+
+    Returns
+    -------
+    (n_groups, n_states) int64 array
+        Counts [1].
+    """
+    return np.stack([np.bincount(states[group], minlength=n_states) for group in marked]).astype(np.int64)
+
+
+def lacey_index(marked: NDArray[Any], total: NDArray[Any]) -> float:
+    """Lacey's mixing index of a marked group over cells: 0 apart, 1 as well mixed as dice would do it.
+
+    ``M = (s0^2 - s^2) / (s0^2 - sr^2)`` with the variance s^2 of the marked share over the cells weighted
+    by their particles, ``s0^2 = c (1 - c)`` and ``sr^2 = c (1 - c) / n`` for n particles a cell (Lacey
+    1954).
+
+    Parameters
+    ----------
+    marked, total : (n_cells,) array
+        Marked and all particles in each cell [1]; empty cells do not count.
+
+    Returns
+    -------
+    float
+        Index [1]; NaN where all or no particles are marked or every cell holds one particle.
+    """
+    held = total > 0
+    n = np.asarray(total[held], float)
+    share = np.asarray(marked[held], float) / n
+    c = float((share * n).sum() / n.sum())
+    apart = c * (1 - c)
+    by_dice = apart * held.sum() / n.sum()
+    if apart <= 0 or apart <= by_dice:
+        return float("nan")
+    spread = float((n * (share - c) ** 2).sum() / n.sum())
+    return (apart - spread) / (apart - by_dice)

@@ -1,0 +1,160 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""What the stages of a case did cost, and how far its chains erred, beside the estimate."""
+
+import math
+from collections.abc import Iterable, Mapping
+from pathlib import Path
+
+import numpy as np
+import pandas as pd
+
+from bedchain.case.schema import Case
+from bedchain.measures.mixing import GROUPS
+from bedchain.provenance import rule_times
+from bedchain.studies.cost.estimate import MEGABYTE, PREDICTED, Numbers
+from bedchain.studies.cost.machine_speed import SOLVERS, simulated_here
+
+FACTOR_AIM = 1.5  # what comes true is to be within this factor of the estimate
+TOTAL = "total"
+HAPPENED = [f"happened_{name}" for name in PREDICTED]
+
+
+def happened(case: Case, bed: Path, made: Path, benchmarks: Mapping[str, Path]) -> pd.DataFrame:
+    """What the stages that have run here did cost, and how far the chains erred.
+
+    Parameters
+    ----------
+    case : dict
+        A checked case.
+    bed, made : Path
+        ``results/<case>`` with its dem.json, and the folder of the chains: the same without a preset.
+    benchmarks : mapping of str to Path
+        Snakemake's benchmark folders of the two, by ``bed`` and ``made``.
+
+    Returns
+    -------
+    DataFrame
+        Indexed by stage: happened_wall_s, happened_memory_mb, happened_disk_mb, happened_error_floors, and
+        done_1, the share of the stage's work that this was.
+    """
+    times = {name: _of_jobs(folder) for name, folder in benchmarks.items()}
+    rows = _solver_happened(case, bed, times["bed"])
+    for name, file in (("parse_dumps", bed / "trajectory.npy"), ("assign_cells", made / "cells.npz")):
+        if job := times["bed" if name == "parse_dumps" else "made"].get(name):
+            rows[name] = job | {"disk_mb": _size_mb([file])}
+    if "parse_dumps" in rows:  # the repeats' own jobs stand in folders of their own
+        others = [rule_times(folder) for folder in sorted((benchmarks["bed"] / "repeats").glob("*"))]
+        rows["parse_dumps"]["wall_s"] += sum(
+            one["parse_dumps"]["wall_s"] for one in others if "parse_dumps" in one
+        )
+        rows["parse_dumps"]["disk_mb"] += _size_mb(bed.glob("repeats/*/trajectory.npy"))
+    for model in case["chain"]["models"]:
+        rows |= {job: times["made"][job] for job in (f"build_transitions_{model}",) if job in times["made"]}
+        errors = errors_happened(made / "metrics.csv", model)
+        if run := times["made"].get(f"run_chain_{model}", {} if math.isnan(errors) else {"wall_s": math.nan}):
+            rows[f"run_chain_{model}"] = run | {"error_floors": errors}
+    table = pd.DataFrame.from_dict(rows, orient="index").reindex(columns=[*PREDICTED, "done_1"])
+    table["done_1"] = table["done_1"].fillna(1.0)
+    return table.rename(columns=dict(zip(PREDICTED, HAPPENED, strict=True)))
+
+
+def _solver_happened(case: Case, bed: Path, times: Mapping[str, Numbers]) -> dict[str, Numbers]:
+    found = simulated_here(bed / "dem.json")
+    if found is None:
+        return {}
+    segments, rows = found["segments"], {}
+    state = bed / Path(segments[0]["folder"]).parent
+    if (settled := settling_loop(state / "settled" / "liggghts.log")) is not None:
+        rows["settling"] = {"wall_s": settled, "done_1": 1.0}
+    done = segments[-1]["end_s"] / case["time"]["end_s"]
+    for name in SOLVERS if case["gas"]["model"] != "none" else SOLVERS[:1]:
+        rows[name] = {"wall_s": sum(segment[f"{name}_s"] for segment in segments), "done_1": done}
+    rows["dem"] |= {"disk_mb": _size_mb(state.rglob("*")), **_memory_of(times, "run_dem")}
+    repeats = [simulated_here(file) for file in sorted(bed.glob("repeats/*/dem.json"))]
+    parts = [segment for repeat in repeats if repeat for segment in repeat["segments"]]
+    window_s = case["comparison"]["end_s"] - case["comparison"]["start_s"]
+    if parts and (wanted := case["comparison"]["repeats"]):
+        spans = sum(part["end_s"] - part["start_s"] for part in parts)
+        rows["repeats"] = {
+            "wall_s": sum(part["wall_s"] for part in parts),
+            "disk_mb": _size_mb(bed.glob("repeats/*/dem/**/*")),
+            "done_1": spans / (wanted * window_s),
+            **_memory_of(times, "repeat_dem_1"),
+        }
+    return rows
+
+
+def settling_loop(log: Path) -> float | None:
+    """Wall time of LIGGGHTS's loop in a log [s]; None without one."""
+    try:
+        words = [line.split() for line in log.read_text(encoding="utf-8", errors="replace").splitlines()]
+        return float(next(line[3] for line in words if line[:3] == ["Loop", "time", "of"]))
+    except (OSError, StopIteration, ValueError, IndexError):
+        return None
+
+
+def errors_happened(metrics: Path, model: str) -> float:
+    """Rms error of a chain's four mixing curves over their noise floor [1]; NaN where either is missing."""
+    if not metrics.exists():
+        return math.nan
+    table = pd.read_csv(metrics).set_index(["quantity", "source"])["value"]
+    pairs = [((f"error_rms_{group}", model), (f"noise_floor_{group}", "dem")) for _, group in GROUPS]
+    if not all(key in table.index for pair in pairs for key in pair):
+        return math.nan
+    errors, floors = (np.array([table[key] for key in keys]) for keys in zip(*pairs, strict=True))
+    return float(np.sqrt((errors**2).mean() / (floors**2).mean()))
+
+
+def compared(expected: pd.DataFrame, found: pd.DataFrame) -> pd.DataFrame:
+    """Estimate and outcome side by side, with their ratio and a row for all.
+
+    Parameters
+    ----------
+    expected, found : DataFrame
+        Of `predicted` and `happened`.
+
+    Returns
+    -------
+    DataFrame
+        Indexed by stage, with ratio_1: wall time that happened over that expected for the part done.
+    """
+    table = expected.join(found)
+    part = table["wall_s"] * table["done_1"]
+    table["ratio_1"] = table["happened_wall_s"] / part.where(part > 0)
+    seen = table["ratio_1"].notna()
+    total = {
+        "wall_s": table["wall_s"].sum(),
+        "memory_mb": table["memory_mb"].max(),
+        "disk_mb": table["disk_mb"].sum(),
+    }
+    if seen.any():
+        total |= {
+            "happened_wall_s": table["happened_wall_s"][seen].sum(),
+            "happened_memory_mb": table["happened_memory_mb"].max(),
+            "happened_disk_mb": table["happened_disk_mb"].sum(),
+            "done_1": part[seen].sum() / table["wall_s"].sum(),
+            "ratio_1": table["happened_wall_s"][seen].sum() / part[seen].sum(),
+        }
+    table.loc[TOTAL] = pd.Series(total)
+    return table.rename_axis("stage")
+
+
+def outside(table: pd.DataFrame) -> list[str]:
+    """Stages whose wall time came out further from the estimate than `FACTOR_AIM`."""
+    ratios = table["ratio_1"].dropna()
+    return list(ratios.index[(ratios > FACTOR_AIM) | (ratios < 1 / FACTOR_AIM)])
+
+
+def _of_jobs(folder: Path) -> dict[str, Numbers]:
+    return {
+        job: {"wall_s": found["wall_s"], "memory_mb": found.get("peak_rss_mb", math.nan)}
+        for job, found in rule_times(folder).items()
+    }
+
+
+def _memory_of(times: Mapping[str, Numbers], job: str) -> Numbers:
+    return {"memory_mb": times[job]["memory_mb"]} if job in times else {}
+
+
+def _size_mb(files: Iterable[Path]) -> float:
+    return sum(file.stat().st_size for file in files if file.is_file()) / MEGABYTE

@@ -1,0 +1,133 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""What a case will cost and how far its chains will err, from the case alone, stage by stage."""
+
+import math
+from collections.abc import Iterable
+
+import pandas as pd
+
+from bedchain.case.presets import Preset, with_preset
+from bedchain.case.schema import Case
+from bedchain.dem import disk
+from bedchain.errors import CaseError
+from bedchain.physics.whole_numbers import ratio
+from bedchain.studies.cost import machine_speed
+from bedchain.studies.cost.machine_speed import SOLVERS, Bed, Speed
+
+MEGABYTE = 1e6
+PREDICTED = ["wall_s", "memory_mb", "disk_mb", "error_floors"]
+Numbers = dict[str, float]
+
+
+def predicted(
+    case: Case, speed: Speed, presets: Iterable[Preset] = (), archived: bool = False
+) -> pd.DataFrame:
+    """Cost of each stage, one after the other on an otherwise idle machine; without figures and diagnostics.
+
+    Parameters
+    ----------
+    case : dict
+        A checked case.
+    speed : Speed
+        Of this machine.
+    presets : iterable of Preset
+        Whose measured errors are known.
+    archived : bool
+        Whether the bed is taken from an archive: nothing is simulated then.
+
+    Returns
+    -------
+    DataFrame
+        Indexed by stage: wall_s, memory_mb, disk_mb, error_floors; NaN where nothing is known.
+    """
+    rows = {} if archived else solver_stages(case, speed)
+    frames, number = _frames(case, case["time"]["end_s"]), case["particles"]["number"]
+    repeats = case["comparison"]["repeats"]
+    window_s = case["comparison"]["end_s"] - case["comparison"]["start_s"]
+    if not archived:
+        parsed = [number * frames, *[number * _frames(case, window_s)] * repeats]
+        costs = [_job("parse_dumps", work, speed) for work in parsed]
+        rows["parse_dumps"] = {
+            "wall_s": sum(cost["wall_s"] for cost in costs),
+            "memory_mb": max(cost["memory_mb"] for cost in costs),
+            "disk_mb": sum(parsed) * disk.TRAJECTORY_BYTES / MEGABYTE,
+        }
+    cells_mb = number * frames * disk.CELL_BYTES / MEGABYTE
+    rows["assign_cells"] = _job("assign_cells", number * frames, speed) | {"disk_mb": cells_mb}
+    learn_s = case["learning"]["end_s"] - case["learning"]["start_s"]
+    moves = number * (_frames(case, learn_s) - 1)
+    for model in case["chain"]["models"]:
+        rows[f"build_transitions_{model}"] = _job(f"build_transitions_{model}", moves, speed)
+        error = {"error_floors": error_of(case, model, presets)}
+        rows[f"run_chain_{model}"] = _job(f"run_chain_{model}", moves, speed) | error
+    return pd.DataFrame.from_dict(rows, orient="index").reindex(columns=PREDICTED)
+
+
+def solver_stages(case: Case, speed: Speed) -> dict[str, Numbers]:
+    """Rows of settling, particles, exchange, gas, start-ups and repeats."""
+    bed, time = machine_speed.bed_of(case), case["time"]
+    window_s = case["comparison"]["end_s"] - case["comparison"]["start_s"]
+    memory_mb = (
+        machine_speed.RUN_MB + bed.ranks * machine_speed.RANK_MB + bed.number * machine_speed.PARTICLE_MB
+    )
+    parts = {
+        name: solver_wall(bed, span, speed) for name, span in (("run", time["end_s"]), ("repeat", window_s))
+    }
+    settling = machine_speed.settling_seconds(bed, time["settle_s"]) / speed.dem
+    rows: dict[str, Numbers] = {"settling": {"wall_s": settling}}
+    for name in SOLVERS if bed.gas_cells else SOLVERS[:1]:
+        rows[name] = {"wall_s": parts["run"][name]}
+    rows["dem"] |= {"memory_mb": memory_mb, "disk_mb": run_disk(case, bed, time["end_s"])}
+    rows["segment_starts"] = {
+        "wall_s": _segments(case, time["end_s"]) * machine_speed.SEGMENT_START_S / speed.jobs
+    }
+    if repeats := case["comparison"]["repeats"]:
+        starts = _segments(case, window_s) * machine_speed.SEGMENT_START_S / speed.jobs
+        rows["repeats"] = {
+            "wall_s": repeats * (sum(parts["repeat"].values()) + starts),
+            "memory_mb": memory_mb,
+            "disk_mb": repeats * run_disk(case, bed, window_s),
+        }
+    return rows
+
+
+def solver_wall(bed: Bed, span_s: float, speed: Speed) -> Numbers:
+    """Wall time of the solver's parts for a span of simulated time, on this machine [s]."""
+    return {
+        name: wall / getattr(speed, name) for name, wall in machine_speed.solver_seconds(bed, span_s).items()
+    }
+
+
+def run_disk(case: Case, bed: Bed, span_s: float) -> float:
+    """Frames and restarts of a span of simulated time [MB]."""
+    frame = bed.number * disk.DUMP_COLUMNS[case["bed"]["layers"]] * disk.DOUBLE_BYTES
+    restart = bed.number * disk.RESTART_BYTES_PARTICLE + bed.gas_cells * disk.RESTART_BYTES_GAS_CELL
+    return (_frames(case, span_s) * frame + (_segments(case, span_s) + 1) * restart) / MEGABYTE
+
+
+def error_of(case: Case, model: str, presets: Iterable[Preset]) -> float:
+    """Measured error of a preset that gives the case the chain it has, in noise floors; NaN without one."""
+    for preset in presets:
+        try:
+            same = with_preset(case, preset)
+        except CaseError:
+            continue
+        if preset.model == model and all(
+            same[section][key] == case[section][key]
+            for section, key in (("cells", "columns"), ("cells", "rows"), ("chain", "lag_s"))
+        ):
+            return preset.error_floors
+    return math.nan
+
+
+def _job(name: str, work: float, speed: Speed) -> Numbers:
+    wall_s, memory_mb = machine_speed.job_cost(name, work)
+    return {"wall_s": wall_s / speed.jobs, "memory_mb": memory_mb}
+
+
+def _frames(case: Case, span_s: float) -> int:
+    return int(ratio(span_s, case["time"]["frame_interval_s"])) + 1
+
+
+def _segments(case: Case, span_s: float) -> int:
+    return math.ceil(ratio(span_s, case["time"]["segment_s"]))

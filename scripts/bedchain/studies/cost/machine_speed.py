@@ -1,0 +1,255 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""How fast the solvers and the jobs are on the machine that they were measured on, and how fast this one is.
+
+The reference is the short and the paper's bed on two shared cores of an AMD EPYC, otherwise idle. Another
+machine is taken to be faster or slower by one factor for each solver, seen in runs of other cases that are
+here already, or else by a probe of the processor.
+"""
+
+import json
+import os
+import time
+from collections.abc import Iterable
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any, NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from bedchain.case.schema import Case
+from bedchain.dem.segments import read_parameters
+from bedchain.physics.whole_numbers import ratio
+
+SOLVERS = ("dem", "exchange", "gas")
+# Particle steps a second [1/s] of one rank, by the particles on it [1]: in a bubbling bed, and settling
+MOVING = ((4500, 8.3e6), (40500, 5.0e6), (81000, 5.1e6))
+SETTLING = ((4500, 6.2e6), (81000, 4.6e6))
+EXCHANGED = 9.4e6  # particles carried to the gas cells and back a second [1/s], on one rank
+GAS_STEP_S = 1.7e-3  # of a step of the gas, however few its cells
+GAS_CELL_S = 2.3e-6  # more for each cell of a rank
+SEGMENT_START_S = 0.8  # mesh, restart and frames of a segment, and the programs' start
+# Memory of the coupled solver [MB]: mpirun and Python, each rank, each particle
+RUN_MB, RANK_MB, PARTICLE_MB = 96.0, 87.0, 1.5e-3
+
+
+class Job(NamedTuple):
+    """A job that was measured from its start to its end.
+
+    Attributes
+    ----------
+    work : float
+        Particles times frames, or times steps of the learning window [1].
+    wall_s : float
+        [s].
+    memory_mb : float
+        Peak of the resident memory [MB].
+    """
+
+    work: float
+    wall_s: float
+    memory_mb: float
+
+
+# Of the short bed and of the paper's: the first 5.5 s of it (parsing, cells, learning), or all of its windows
+# (running the chains, which are learned 40 times more for their error bars), with cells of ten diameters
+JOBS: dict[str, tuple[Job, Job]] = {
+    "parse_dumps": (Job(1_989_000, 0.58, 70), Job(17_901_000, 3.90, 83)),
+    "assign_cells": (Job(1_989_000, 0.40, 90), Job(17_901_000, 0.55, 125)),
+    "build_transitions_static": (Job(720_000, 0.83, 205), Job(8_100_000, 1.00, 267)),
+    "run_chain_static": (Job(720_000, 1.3, 217), Job(16_200_000, 3.5, 480)),
+    "build_transitions_dynamic": (Job(720_000, 0.87, 211), Job(8_100_000, 1.51, 327)),
+    "run_chain_dynamic": (Job(720_000, 2.6, 230), Job(16_200_000, 49.0, 580)),
+}
+
+PROBE_PARTICLES, PROBE_PAIRS, PROBE_ROUNDS = 20_000, 60_000, 40
+PROBE_REFERENCE_S = 4.5e-3  # processor time of a round on the reference machine
+
+
+@dataclass(frozen=True)
+class Bed:
+    """What the cost of a simulation depends on.
+
+    Attributes
+    ----------
+    number, ranks, gas_cells : int
+        Particles, MPI ranks, cells of the gas [1]; no cells where there is no gas.
+    dem_step_s, gas_step_s : float
+        Steps of the particles, and of gas and exchange [s].
+    """
+
+    number: int
+    ranks: int
+    gas_cells: int
+    dem_step_s: float
+    gas_step_s: float
+
+
+@dataclass(frozen=True)
+class Speed:
+    """This machine over the reference one [1], and how that is known.
+
+    Attributes
+    ----------
+    dem, exchange, gas, jobs : float
+        Speed of the parts of the solver, and of everything else [1].
+    source : str
+        One phrase.
+    """
+
+    dem: float
+    exchange: float
+    gas: float
+    jobs: float
+    source: str
+
+
+def bed_of(case: Case) -> Bed:
+    """What the cost of a checked case depends on."""
+    bed, time_, cell = case["bed"], case["time"], case["gas"]["cell_size_m"]
+    deep = max(1, round(bed["thickness_m"] / cell)) if bed["layers"] == "many" else 1
+    cells = int(ratio(bed["width_m"], cell) * ratio(bed["height_m"], cell)) * deep
+    coupled = case["gas"]["model"] != "none"
+    number, ranks = case["particles"]["number"], case["run"]["ranks"]
+    return Bed(number, ranks, cells if coupled else 0, time_["dem_step_s"], time_["gas_step_s"])
+
+
+def solver_seconds(bed: Bed, span_s: float, cores: int | None = None) -> dict[str, float]:
+    """Wall time of each part of the solver on the reference machine, for a span of simulated time.
+
+    Parameters
+    ----------
+    bed : Bed
+    span_s : float
+        [s].
+    cores : int, optional
+        That the ranks share; those of this machine by default.
+
+    Returns
+    -------
+    dict
+        dem, exchange, gas [s].
+    """
+    at_once = min(bed.ranks, cores or len(os.sched_getaffinity(0)))
+    dem = bed.number * span_s / bed.dem_step_s / (at_once * per_rank(MOVING, bed))
+    if not bed.gas_cells:
+        return {"dem": dem, "exchange": 0.0, "gas": 0.0}
+    steps = span_s / bed.gas_step_s
+    exchange = steps * bed.number / (at_once * EXCHANGED)
+    return {
+        "dem": dem,
+        "exchange": exchange,
+        "gas": steps * (GAS_STEP_S + GAS_CELL_S * bed.gas_cells / at_once),
+    }
+
+
+def settling_seconds(bed: Bed, span_s: float, cores: int | None = None) -> float:
+    """Wall time of settling on the reference machine [s]; arguments as `solver_seconds`."""
+    at_once = min(bed.ranks, cores or len(os.sched_getaffinity(0)))
+    return bed.number * span_s / bed.dem_step_s / (at_once * per_rank(SETTLING, bed))
+
+
+def per_rank(measured: tuple[tuple[float, float], ...], bed: Bed) -> float:
+    """Particle steps a second of a rank, between beds that were measured and constant beyond them [1/s]."""
+    sizes, rates = np.array(measured).T
+    return float(np.interp(np.log(bed.number / bed.ranks), np.log(sizes), rates))
+
+
+def job_cost(name: str, work: float) -> tuple[float, float]:
+    """Wall time [s] and memory [MB] of a job on the reference machine: a line through two measured ones.
+
+    Parameters
+    ----------
+    name : str
+        A job of `JOBS`.
+    work : float
+        As there.
+
+    Returns
+    -------
+    wall_s, memory_mb : float
+        NaN for a job that was not measured.
+    """
+    if name not in JOBS:
+        return np.nan, np.nan
+    small, large = JOBS[name]
+    part = (work - small.work) / (large.work - small.work)
+    wall_s = small.wall_s + part * (large.wall_s - small.wall_s)
+    memory_mb = small.memory_mb + part * (large.memory_mb - small.memory_mb)
+    return max(0.0, wall_s), max(0.0, memory_mb)
+
+
+def simulated_here(dem: Path) -> dict[str, Any] | None:
+    """The manifest of a run whose segments are here; None for one out of an archive, timed elsewhere."""
+    try:
+        found = json.loads(dem.read_text(encoding="utf-8"))
+        here = (dem.parent / found["segments"][0]["folder"]).exists()
+    except (OSError, ValueError, KeyError, IndexError):
+        return None
+    return dict(found) if here else None
+
+
+def calibrate(runs: Iterable[Path], bed: Bed) -> Speed:
+    """Speed of this machine, by the run of another case nearest in size, or by a probe.
+
+    Parameters
+    ----------
+    runs : iterable of Path
+        ``dem.json`` of other cases.
+    bed : Bed
+        That is to be estimated.
+
+    Returns
+    -------
+    Speed
+    """
+    jobs = probe_speed()
+    known = [(dem, found) for dem in runs if (found := simulated_here(dem))]
+    if not known:
+        return Speed(jobs, jobs, jobs, jobs, f"a probe of the processor, {jobs:.2f} of the reference machine")
+    dem, found = min(known, key=lambda item: abs(np.log(item[1]["number"] / bed.number)))
+    given = read_parameters(dem.parent / "parameters.lig")
+    cells = int(np.prod([float(given[f"gas_cells_{axis}"]) for axis in "xyz"]))
+    spent = {name: sum(segment[f"{name}_s"] for segment in found["segments"]) for name in SOLVERS}
+    like = Bed(
+        found["number"], found["ranks"], cells if spent["gas"] else 0,
+        float(given["dem_step"]), float(given["gas_step"]),
+    )  # fmt: skip
+    span_s = sum(segment["end_s"] - segment["start_s"] for segment in found["segments"])
+    wanted = solver_seconds(like, span_s)
+    factors = {name: wanted[name] / spent[name] if spent[name] else jobs for name in SOLVERS}
+    about = f"the run of {dem.parent.name} (particles at {factors['dem']:.2f}, gas at {factors['gas']:.2f}"
+    return Speed(**factors, jobs=jobs, source=f"{about} of the reference machine's speed)")
+
+
+def probe_speed() -> float:
+    """Speed of this processor over the reference one [1], by a pass over pairs of particles as DEM makes.
+
+    Processor time, so that other programs hardly change it; the fastest of several passes.
+    """
+    rng = np.random.default_rng(1)
+    places = rng.random((PROBE_PARTICLES, 2))
+    first = np.sort(rng.integers(0, PROBE_PARTICLES, PROBE_PAIRS))
+    second = (first + rng.integers(1, 200, PROBE_PAIRS)) % PROBE_PARTICLES
+    spent = []
+    for _ in range(PROBE_ROUNDS):
+        begin = time.process_time()
+        pair_forces(places, first, second)
+        spent.append(time.process_time() - begin)
+    return PROBE_REFERENCE_S / min(spent)
+
+
+def pair_forces(
+    places: NDArray[np.float64], first: NDArray[np.int64], second: NDArray[np.int64]
+) -> NDArray[np.float64]:
+    """Sum of Hertz-like forces on each particle, (n, 2), of pairs of particles."""
+    apart = places[first] - places[second]
+    distance = np.sqrt((apart**2).sum(axis=1)) + 1e-12
+    force = (np.maximum(0.0, 1.0 - distance) ** 1.5 / distance)[:, None] * apart
+    return np.stack(
+        [
+            np.bincount(first, force[:, axis], len(places)) - np.bincount(second, force[:, axis], len(places))
+            for axis in range(2)
+        ],
+        axis=1,
+    )

@@ -1,0 +1,164 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""What the DEM itself does where chains are tested: curves and batches from all starts of all runs."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from bedchain.measures.batch import batch_of, share_by_cell
+from bedchain.studies.scores.marked_starts import Start, starts_in
+from bedchain.studies.scores.selection import observed_curves
+from bedchain.trajectory.grid import Grid
+from bedchain.trajectory.realisations import Run, part_of
+from bedchain.uncertainty.deviations import deviations, distances, mean_of_others, resampled, stacked
+
+Array = NDArray[np.float64]
+
+REPLICATES = 1000
+# of the intervals only: the same data give the same interval
+INTERVAL_SEED = 17
+
+
+@dataclass(frozen=True)
+class HeldOut:
+    """The DEM after the learning window, in the run learned from and in its repeats.
+
+    Parameters
+    ----------
+    runs : sequence of Run
+        The first is that learned from.
+    starts : sequence of Start
+        Where particles are marked, in all runs.
+    grid : Grid
+        The case's cells, for the batch.
+    curves : (n_starts, n_frames, 4) array
+        Mixing curves, NaN after a start's last frame [1].
+    batches : sequence of (n_particles,) bool array
+        What is low in the bed at each start.
+    moments : (n_moments,) int array
+        Frames after a start at which the batch is looked at [1].
+    densities : (n_starts, n_moments, n_cells) array
+        Share of the batch in each cell, NaN after a start's last frame [1].
+    """
+
+    runs: Sequence[Run]
+    starts: Sequence[Start]
+    grid: Grid
+    curves: Array
+    batches: Sequence[NDArray[np.bool_]]
+    moments: NDArray[np.int64]
+    densities: Array
+
+    @property
+    def interval_s(self) -> float:
+        """Time between two frames [s]."""
+        return self.runs[0].interval_s
+
+    @property
+    def run(self) -> NDArray[np.int64]:
+        """Run of each start."""
+        return np.array([start.run for start in self.starts])
+
+    @property
+    def number(self) -> NDArray[np.int64]:
+        """Number of each start in its window."""
+        return np.array([start.number for start in self.starts])
+
+    @property
+    def repeated(self) -> bool:
+        """Whether there are repeats, which then give the noise floor; else it is the spread of starts."""
+        return len(self.runs) > 1
+
+    def windows(self) -> dict[str, NDArray[np.bool_]]:
+        """Which starts each score is over, by the name of the window.
+
+        ``start``: the paper's single start. ``starts``: all starts of all runs. ``repeats``: the paper's
+        start in each of the repeats, which nothing was learned from.
+        """
+        first = self.number == 0
+        found = {"start": first & (self.run == 0), "starts": np.ones(first.size, bool)}
+        return found | ({"repeats": first & (self.run > 0)} if self.repeated else {})
+
+    def floor_of(self, window: str) -> NDArray[np.bool_]:
+        """Starts whose spread is the noise floor of a window."""
+        all_of_them = window == "starts" or not self.repeated
+        return np.ones(self.number.size, bool) if all_of_them else self.number == 0
+
+    def deviations(self) -> Array:
+        """What the curves differ by from those they repeat; see `deviations.deviations`."""
+        return deviations(self.curves, self._group())
+
+    def deviations_of_starts(self) -> Array:
+        """What the curves differ by from those of other starts in their run: the state at the start, too.
+
+        A model that knows the mean of all states, but not the bubbles that there are, errs by as much.
+        """
+        return deviations(self.curves, self.run)
+
+    def batch_distances(self) -> Array:
+        """Total variation of each batch from the mean of those it repeats, (n_starts, n_moments, 1) [1]."""
+        return distances(self.densities, mean_of_others(self.densities, self._group()))
+
+    def weights(self, which: NDArray[np.bool_]) -> Array:
+        """Starts drawn again for intervals, (n_replicates, n_which)."""
+        return resampled(self.run[which], REPLICATES, np.random.default_rng(INTERVAL_SEED))
+
+    def _group(self) -> NDArray[np.int64]:
+        return self.number if self.repeated else np.zeros(len(self.starts), np.int64)
+
+
+def hold_out(
+    runs: Sequence[Run], grid: Grid, comparison_s: tuple[float, float], spacing: int,
+    splits: tuple[float, float], batch_height_m: float, moments_s: Sequence[float],
+) -> HeldOut:  # fmt: skip
+    """Collect what the DEM does in the comparison window of each run.
+
+    Parameters
+    ----------
+    runs : sequence of Run
+        The first is that learned from.
+    grid : Grid
+        The case's cells.
+    comparison_s : (float, float)
+        Start and end of the comparison window [s].
+    spacing : int
+        Frames between starts.
+    splits : (float, float)
+        Lines between left and right, low and up [m].
+    batch_height_m : float
+        Height of the batch [m].
+    moments_s : sequence of float
+        When the batch is looked at, after each start [s].
+
+    Returns
+    -------
+    HeldOut
+
+    Raises
+    ------
+    UserError
+        A run lacks more than half of the window.
+    """
+    starts = [
+        start
+        for number, run in enumerate(runs)
+        for start in starts_in(part_of(run, *comparison_s), spacing, number)
+    ]
+    moments = np.array([round(moment / runs[0].interval_s) for moment in moments_s], np.int64)
+    batches, densities = [], []
+    for start in starts:
+        run = runs[start.run]
+        batches.append(batch_of(grid, _cells(run, grid, start.frame), batch_height_m))
+        found = np.full((moments.size, grid.n_cells), np.nan)
+        for row, moment in zip(found, moments, strict=True):
+            if moment <= start.length:
+                row[:] = share_by_cell(_cells(run, grid, start.frame + moment)[batches[-1]], grid.n_cells)
+        densities.append(found)
+    curves = stacked([observed_curves(runs[start.run], start, splits) for start in starts])
+    return HeldOut(runs, starts, grid, curves, batches, moments, np.array(densities))
+
+
+def _cells(run: Run, grid: Grid, frame: int) -> NDArray[np.int32]:
+    return grid.cell_of(run.values[frame, 0], run.values[frame, 1])

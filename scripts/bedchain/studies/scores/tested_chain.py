@@ -1,0 +1,210 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""One chain, learned on the whole learning window, against the DEM where nothing was learned: its scores."""
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from bedchain.chains.chain import Chain
+from bedchain.measures.lagrangian import Places, Statistics, corrected, in_cells, statistics
+from bedchain.studies.scores.candidates import Candidate, grid_of
+from bedchain.studies.scores.held_out import HeldOut
+from bedchain.studies.scores.marked_starts import Start
+from bedchain.studies.scores.selection import (
+    Task,
+    at_frames,
+    leading_to,
+    learned,
+    predicted_curves,
+    running_cost,
+    timed,
+)
+from bedchain.trajectory.frames import Frames
+from bedchain.trajectory.regrid import regrid
+from bedchain.uncertainty.deviations import stacked
+
+Array = NDArray[np.float64]
+
+# mixing curves are looked at so long after a start [s]
+TIMES_S = (0.1, 0.25, 0.5, 1.0, 2.0, 5.0)
+# displacements over about this time have an autocorrelation and a dispersion; shorter ones are lost in cells
+SPAN_S = 0.1
+# times of the mean-square displacement, evenly spaced in their logarithms
+LAGRANGIAN_TIMES = 24
+# rows of the case's cells in a layer of the dispersion: cells twice as large still nest in it
+LAYER_ROWS = 2
+
+
+@dataclass(frozen=True)
+class Trial:
+    """A chain and what it did.
+
+    Parameters
+    ----------
+    chain : Chain
+    lag : int
+        Frames in its step.
+    curves : (n_starts, n_frames, 4) array
+        Expected mixing curves at every frame from each start of the `HeldOut` [1].
+    densities : (n_starts, n_moments, n_cells) array
+        Expected shares of the batch, on the case's cells [1].
+    drawn : (n_starts, n_frames, 4) array
+        Mixing curves of one Monte Carlo from each start [1].
+    lagrangian : list of (model, dem) Statistics
+        Of each run, from the start of the window.
+    cost_s : dict of str to float
+        learn_s, and those of `selection.running_cost` [s].
+    """
+
+    chain: Chain
+    lag: int
+    curves: Array
+    densities: Array
+    drawn: Array
+    lagrangian: list[tuple[Statistics, Statistics]]
+    cost_s: dict[str, float]
+
+
+def try_out(candidate: Candidate, learning: slice, held: HeldOut, task: Task, seed: int) -> Trial:
+    """Learn a candidate on the whole learning window and let it run from every start held out.
+
+    Parameters
+    ----------
+    candidate : Candidate
+        Its settings chosen.
+    learning : slice
+        Frames of the learning window of the first run.
+    held : HeldOut
+    task : Task
+    seed : int
+        Of the Monte Carlo runs.
+
+    Returns
+    -------
+    Trial
+
+    Raises
+    ------
+    DataError
+        The model cannot use the data.
+    """
+    run, lag = held.runs[0], candidate.lag
+    grid = grid_of(candidate, task.grid)
+    frames = run.frames(grid, learning)
+    chain, learn_s = timed(lambda: learned(candidate, frames, task))
+    rng = np.random.default_rng(seed)
+    curves, densities, drawn = [], [], []
+    for start, batch in zip(held.starts, held.batches, strict=True):
+        begin = leading_to(held.runs[start.run], chain.grid, start.frame, lag)
+        curves.append(predicted_curves(chain, held.runs[start.run], start, lag, task.splits))
+        inside = held.moments[held.moments <= start.length]
+        shares = batch_shares(chain, begin, batch, inside, lag)
+        densities.append(regrid(shares, chain.grid, held.grid))
+        one = chain.mixing(begin, *task.splits, -(-start.length // lag), rng)
+        drawn.append(at_frames(one, lag, start.length))
+    lagrangian = [lagrangian_of(chain, held, number, lag, rng) for number in range(len(held.runs))]
+    first = leading_to(run, grid, held.starts[0].frame, lag)
+    cost = {"learn_s": learn_s} | running_cost(chain, first, task)
+    return Trial(chain, lag, stacked(curves), _padded(densities, held), stacked(drawn), lagrangian, cost)
+
+
+def batch_shares(
+    chain: Chain,
+    begin: Frames,
+    batch: NDArray[np.bool_],
+    moments: NDArray[np.int64],
+    lag: int,
+    rng: np.random.Generator | None = None,
+) -> Array:
+    """Where a batch is at moments between a chain's steps, on the chain's cells, by straight lines.
+
+    Parameters
+    ----------
+    chain : Chain
+    begin : Frames
+        Up to the start.
+    batch : (n_particles,) bool array
+    moments : (n_moments,) int array
+        Rising frames after the start [1].
+    lag : int
+        Frames in a step.
+    rng : numpy Generator, optional
+        For a Monte Carlo of every particle instead of the expectation.
+
+    Returns
+    -------
+    (n_moments, n_cells) array
+        Shares of the batch [1].
+    """
+    if moments.size == 0:
+        return np.zeros((0, chain.grid.n_cells))
+    before, after = moments // lag, -(-moments // lag)
+    steps = np.unique(np.concatenate((before, after)))
+    found = chain.densities(begin, batch[None], [int(step) for step in steps], rng)[:, 0] / batch.sum()
+    part = (moments / lag - before)[:, None]
+    one, two = (found[np.searchsorted(steps, end)] for end in (before, after))
+    return np.asarray((1 - part) * one + part * two)
+
+
+def lagrangian_of(
+    chain: Chain, held: HeldOut, number: int, lag: int, rng: np.random.Generator
+) -> tuple[Statistics, Statistics]:
+    """Lagrangian statistics of a chain's particles and of the DEM's, from the window's start to its end.
+
+    Parameters
+    ----------
+    chain : Chain
+    held : HeldOut
+    number : int
+        Of the run.
+    lag : int
+        Frames in a step.
+    rng : numpy Generator
+
+    Returns
+    -------
+    model, dem : Statistics
+        At the same times, multiples of the lag; the model's less what its cells add.
+    """
+    dem, values, steps, span, edges = _dem_statistics(held, number, lag)
+    interval_s = lag * held.interval_s
+    seen = np.stack([chain.grid.cell_of(now[0], now[1]) for now in values])
+    dem_in_cells = statistics(in_cells(chain.grid, seen, interval_s), steps, span, edges)
+    start = _first_start(held, number)
+    begin = leading_to(held.runs[number], chain.grid, start.frame, lag)
+    cells = np.stack([*chain.paths(begin, len(values) - 1, rng)])
+    model = statistics(in_cells(chain.grid, cells, interval_s), steps, span, edges)
+    return corrected(model, dem, dem_in_cells), dem
+
+
+def dem_statistics(held: HeldOut, number: int, lag: int = 1) -> Statistics:
+    """Lagrangian statistics of the DEM's particles in the window of a run, at every ``lag`` frames."""
+    return _dem_statistics(held, number, lag)[0]
+
+
+def _dem_statistics(
+    held: HeldOut, number: int, lag: int
+) -> tuple[Statistics, NDArray[np.floating], NDArray[np.int64], int, Array]:
+    start = _first_start(held, number)
+    count = start.length // lag
+    values = held.runs[number].values[start.frame : start.frame + count * lag + 1 : lag]
+    interval_s = lag * held.interval_s
+    span = max(1, round(SPAN_S / interval_s))
+    longest = max(1, min(count // 2, count - span))
+    wanted = np.concatenate((np.geomspace(1, longest, LAGRANGIAN_TIMES), np.array(TIMES_S) / interval_s))
+    steps = np.unique(np.concatenate(([0], wanted[wanted <= longest].round().astype(int))))
+    edges = np.append(held.grid.z_edges_m[:-1:LAYER_ROWS], held.grid.height_m)
+    places = Places(values[:, 0], values[:, 1], interval_s)
+    return statistics(places, steps, span, edges), values, steps, span, edges
+
+
+def _first_start(held: HeldOut, number: int) -> Start:
+    return next(start for start in held.starts if start.run == number)
+
+
+def _padded(densities: list[Array], held: HeldOut) -> Array:
+    table = np.full(held.densities.shape, np.nan)
+    for row, found in zip(table, densities, strict=True):
+        row[: len(found)] = found
+    return table

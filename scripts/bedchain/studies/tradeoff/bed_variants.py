@@ -1,0 +1,214 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""The ways in which a case's bed is simulated again: one key at a time, and pairs that belong together."""
+
+import math
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass
+from fractions import Fraction
+from typing import Any
+
+from bedchain.case.schema import Case, case_value, load_schema
+from bedchain.case.variants import Variant
+from bedchain.errors import UserError, report_user_errors
+from bedchain.physics.whole_numbers import is_prime
+
+# Young's modulus over the case's; the step goes with its root, so that its share of the Rayleigh time stays
+STIFFNESSES = (0.1, 0.4, 4.0, 10.0)
+STEPS = (0.5, 2.5)
+GAS_STEPS = (0.2, 0.5, 2.0)
+GAS_CELLS = (0.5, 2.0, 4.0)
+# in diameters; what is shorter than 1.4 gas cells changes nothing, since their own kernel is as wide
+SMOOTHINGS = (10.0,)
+# in diameters; the first by the conversion of Hoomans et al. 1996
+THICKNESSES = (0.859, 1.2)
+FRICTIONS = (0.0, 0.3)
+RESTITUTIONS = (0.8, 0.97)
+# an arm of a twentieth of the radius: where the audit would keep rolling resistance
+ROLLING_FRICTIONS = (0.05,)
+PRESSURE_TOLERANCES = (1e-5, 1e-9)
+SEED_SPACING = 1000
+SEEDS = 2
+# steps are cut by products of these alone, so that they are decimal numbers with few digits
+PRIMES = (2, 5)
+ROUND_OFF = 1e-9
+OPTIONS = ("dem",)
+REALISATION = "realisation"  # the axis of those that differ in their random start alone
+
+
+@dataclass(frozen=True)
+class BedVariant:
+    """A variant, and which axis of the study it is on.
+
+    Attributes
+    ----------
+    axis : str
+    variant : Variant
+    """
+
+    axis: str
+    variant: Variant
+
+    @property
+    def changed(self) -> str:
+        """What differs from the case, in one line."""
+        return "; ".join(f"{key} {_shown(value)}" for key, value in self.variant.changes.items())
+
+
+def bed_variants(case: Case) -> dict[str, BedVariant]:
+    """All variants of a case by name, the case itself among them as ``base``.
+
+    Parameters
+    ----------
+    case : Case
+
+    Returns
+    -------
+    dict
+        Those that cost most first, so that the last ones end together; values that are the case's own are
+        left out.
+    """
+    gas = case["gas"]["model"] != "none"
+    found = {"base": BedVariant(REALISATION, Variant("base"))}
+    for axis, name, changes in [*_particles(case), *(_gas(case) if gas else ())]:
+        if any(case_value(case, key) != value for key, value in changes.items()):
+            found[name] = BedVariant(axis, Variant(name, changes))
+    return dict(sorted(found.items(), key=lambda pair: _step(pair[1], case)))
+
+
+def wanted_variants(option: object, case: Case, archived: bool) -> list[str]:
+    """Names of the variants to simulate, from ``--config tradeoff=...``.
+
+    Parameters
+    ----------
+    option : object
+        ``{"dem": "all"}``, ``"none"`` or a list of names; without it all where the case is simulated, none
+        where an archive serves it.
+    case : Case
+    archived : bool
+        Whether the case comes from its archive.
+
+    Returns
+    -------
+    list of str
+        Of `bed_variants`, in its order.
+
+    Raises
+    ------
+    UserError
+        Another word, or a name that does not exist: with those that do.
+    """
+    remedy = "take --config tradeoff='{dem: all}', none, or a list of names"
+    if option is not None and not isinstance(option, Mapping):
+        raise UserError(f"tradeoff={option}: {remedy}")
+    given = dict(option or {})
+    if unknown := sorted(set(given) - set(OPTIONS)):
+        raise UserError(f"tradeoff has no {', '.join(unknown)}: {remedy}")
+    dem = given.get("dem", "none" if archived else "all")
+    known = bed_variants(case)
+    if dem in ("all", "none"):
+        return list(known) if dem == "all" else []
+    names = [dem] if isinstance(dem, str) else dem
+    if not isinstance(names, list):
+        raise UserError(f"tradeoff.dem {dem}: {remedy}")
+    if unknown := [str(name) for name in names if name not in known]:
+        raise UserError(f"tradeoff.dem: there is no variant {', '.join(unknown)}; take of {', '.join(known)}")
+    return [name for name in known if name in names]
+
+
+def variants_or_exit(option: object, case: Case, archived: bool) -> list[str]:
+    """`wanted_variants`, or one clear message and the end of snakemake, before anything runs."""
+    with report_user_errors():
+        return wanted_variants(option, case, archived)
+
+
+def dividing_step(whole_s: float, wanted_s: float) -> float:
+    """The longest step up to about `wanted_s` that a time is a whole number of, in decimal numbers [s]."""
+    number = math.ceil(whole_s / wanted_s * (1 - ROUND_OFF))
+    while _without(PRIMES, number) != 1:
+        number += 1
+    return float(Fraction(repr(whole_s)) / number)
+
+
+def dividing_cell(case: Case, factor: float) -> float:
+    """Square gas cells that divide the bed, as nearly `factor` times the case's as may be [m]."""
+    width, height = (Fraction(repr(case["bed"][name])) for name in ("width_m", "height_m"))
+    shape = height / width
+    wanted = float(width) / (case["gas"]["cell_size_m"] * factor)
+    least = shape.denominator  # columns must be a multiple of it for whole rows
+    return float(width / (least * max(1, round(wanted / least))))
+
+
+def _particles(case: Case) -> Iterator[tuple[str, str, dict[str, Any]]]:
+    step, gas_step = case["time"]["dem_step_s"], _coupling(case)
+    for factor in STIFFNESSES:
+        young = case["contact"]["young_modulus_Pa"] * factor
+        shorter = dividing_step(gas_step, step / math.sqrt(factor))
+        changes = {"contact.young_modulus_Pa": young, "time.dem_step_s": shorter}
+        yield "stiffness and step", f"stiffness_{factor:g}", changes
+    for factor in STEPS:
+        changes = {"time.dem_step_s": dividing_step(gas_step, step * factor)}
+        # Young's modulus stays: the share of the Rayleigh time is another
+        yield "particle step", f"step_{factor:g}", changes | {"time.allow_unstable_step": True}
+    for value in FRICTIONS:
+        yield "ablation", f"friction_{value:g}", {"contact.friction_1": value}
+    for value in RESTITUTIONS:
+        yield "restitution", f"restitution_{value:g}", {"contact.restitution_1": value}
+    for value in ROLLING_FRICTIONS:
+        yield "ablation", f"rolling_{value:g}", {"contact.rolling_friction_1": value}
+    for law in load_schema()["properties"]["contact"]["properties"]["law"]["enum"]:
+        yield "contact law", law, {"contact.law": law}
+    seed = case["seed"]
+    for number in range(1, SEEDS + 1):
+        seed = next(prime for prime in range(seed + SEED_SPACING, 2 * seed) if is_prime(prime))
+        yield REALISATION, f"seed_{number}", {"seed": seed}
+
+
+def _gas(case: Case) -> Iterator[tuple[str, str, dict[str, Any]]]:
+    time = case["time"]
+    for factor in GAS_STEPS:
+        step = dividing_step(time["frame_interval_s"], time["gas_step_s"] * factor)
+        yield "gas step", f"gas_step_{factor:g}", _with_gas_step(case, step)
+    for factor in GAS_CELLS:
+        yield "gas cell", f"gas_cell_{factor:g}", {"gas.cell_size_m": dividing_cell(case, factor)}
+    for value in SMOOTHINGS:
+        yield "smoothing", f"smoothing_{value:g}", {"gas.smoothing_diameters_1": value}
+    for value in PRESSURE_TOLERANCES:
+        yield "gas solver", f"tolerance_{value:g}", {"gas.pressure_tolerance_1": value}
+    for law in load_schema()["properties"]["gas"]["properties"]["drag_law"]["enum"]:
+        yield "drag law", f"drag_{law}", {"gas.drag_law": law}
+    for value in THICKNESSES if case["bed"]["layers"] == "one" else ():
+        thickness = value * case["particles"]["diameter_m"]
+        yield "slab thickness", f"thickness_{value:g}", {"bed.thickness_m": thickness}
+    yield "ablation", "ramp_none", {"time.ramp_s": time["gas_step_s"]}
+    fine = {"gas.cell_size_m": dividing_cell(case, 0.5)}
+    same_kernel = math.sqrt(2) * case["gas"]["cell_size_m"] / case["particles"]["diameter_m"]
+    yield "pair", "gas_cell_0.5_same_kernel", fine | {"gas.smoothing_diameters_1": same_kernel}
+    shorter = _with_gas_step(case, dividing_step(time["frame_interval_s"], time["gas_step_s"] * 0.5))
+    yield "pair", "gas_cell_0.5_gas_step_0.5", fine | shorter
+
+
+def _without(primes: tuple[int, ...], number: int) -> int:
+    """What is left of a number without some of its factors."""
+    for prime in primes:
+        while number % prime == 0:
+            number //= prime
+    return number
+
+
+def _with_gas_step(case: Case, gas_step_s: float) -> dict[str, Any]:
+    step = dividing_step(gas_step_s, case["time"]["dem_step_s"])
+    return {"time.gas_step_s": gas_step_s, "time.dem_step_s": step}
+
+
+def _coupling(case: Case) -> float:
+    """What the particles' step must divide [s]: the gas's step, or, without gas, the frame interval."""
+    time, gas = case["time"], case["gas"]["model"] != "none"
+    return float(time["gas_step_s"] if gas else time["frame_interval_s"])
+
+
+def _step(one: BedVariant, case: Case) -> float:
+    return float(one.variant.changes.get("time.dem_step_s", case["time"]["dem_step_s"]))
+
+
+def _shown(value: object) -> str:
+    return f"{value:.6g}" if isinstance(value, float) else str(value)

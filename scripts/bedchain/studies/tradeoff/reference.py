@@ -1,0 +1,202 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""What a simulated bed is seen to do, and all realisations of one as the reference."""
+
+from collections.abc import Sequence
+from pathlib import Path
+
+import numpy as np
+import pandas as pd
+from numpy.typing import NDArray
+
+from bedchain.case.schema import Case
+from bedchain.comparison.curves import curves_of
+from bedchain.dem.series import read_series
+from bedchain.measures.batch import share_by_cell
+from bedchain.measures.dispersion import dispersion_by_height
+from bedchain.studies.scores.marked_starts import Start
+from bedchain.studies.scores.selection import observed_curves
+from bedchain.studies.scores.tested_chain import SPAN_S
+from bedchain.studies.tradeoff.observables import Reference
+from bedchain.trajectory.grid import Grid
+from bedchain.trajectory.realisations import Run, part_of
+from bedchain.uncertainty.deviations import stacked
+
+Array = NDArray[np.float64]
+# groups count as mixed once so much of the difference between them is left
+MIXED = float(np.exp(-1.0))
+
+
+def splits_of(case: Case) -> tuple[float, float]:
+    """Lines between left and right, low and up [m]."""
+    return case["mixing"]["split_x_m"], case["mixing"]["split_z_m"]
+
+
+def compared(run: Run, case: Case) -> slice:
+    """Frames of the comparison window."""
+    return part_of(run, case["comparison"]["start_s"], case["comparison"]["end_s"])
+
+
+def own_grid(run: Run, case: Case) -> Grid:
+    """The case's cells on the bed of a run."""
+    return Grid(run.width_m, run.height_m, case["cells"]["columns"], case["cells"]["rows"])
+
+
+def curves_seen(run: Run, case: Case) -> Array:
+    """Mixing curves of a run over the comparison window, from the frame after its start, (n_frames, 4)."""
+    which = compared(run, case)
+    return observed_curves(run, Start(0, 0, which.start, which.stop - 1), splits_of(case))[1:]
+
+
+def densities_seen(run: Run, case: Case) -> Array:
+    """Mean shares in the case's cells over either half of the comparison window, (2, n_cells)."""
+    grid, which = own_grid(run, case), compared(run, case)
+    half = which.start + 1 + (which.stop - 1 - which.start) // 2
+    return np.stack(
+        [
+            np.mean([share_by_cell(grid.cell_of(*run.values[at, :2]), grid.n_cells) for at in part], axis=0)
+            for part in (range(which.start + 1, half), range(half, which.stop))
+        ]
+    )
+
+
+def scalars_seen(run: Run, series: pd.DataFrame | None, case: Case) -> dict[str, float]:
+    """What a bed does as a whole over the comparison window.
+
+    Parameters
+    ----------
+    run : Run
+    series : DataFrame or None
+        ``bed_series.csv``; None where it was not kept.
+    case : Case
+
+    Returns
+    -------
+    dict
+        By the names of `observables.SCALARS`; without those of the gas where there is none, NaN for a
+        mixing time after the end of the window.
+    """
+    which, grid = compared(run, case), own_grid(run, case)
+    curves = np.vstack((np.ones(4), curves_seen(run, case)))
+    found = {
+        "mixing_time_radial": mixing_time(curves[:, 0], curves[:, 1], run.interval_s),
+        "mixing_time_axial": mixing_time(curves[:, 2], curves[:, 3], run.interval_s),
+    }
+    x, z, vx, vz = (run.values[which, row] for row in range(4))
+    lag = max(1, min(round(SPAN_S / run.interval_s), len(x) - 1))
+    layers = dispersion_by_height(x, z, grid.z_edges_m, lag, lag * run.interval_s)
+    weights, filled = layers.displacements, layers.displacements > 0
+    for column, axis in enumerate("xz"):
+        values = layers.dispersion_m2_s[filled, column]
+        found[f"dispersion_{axis}"] = float(np.average(values, weights=weights[filled]))
+    if run.has_velocities:
+        cells = np.stack([grid.cell_of(*places) for places in zip(x, z, strict=True)])
+        found["granular_temperature"] = granular_temperature(cells, vx, vz, grid.n_cells)
+    return found | ({} if series is None else series_scalars(series, case))
+
+
+def series_scalars(series: pd.DataFrame, case: Case) -> dict[str, float]:
+    """Mean height of the particles, pressure drop and its standard deviation over the comparison window."""
+    part = series[series["time_s"].between(case["comparison"]["start_s"], case["comparison"]["end_s"])]
+    found = {"bed_height": float(part["mean_height_m"].mean())}
+    if "pressure_drop_Pa" in part:
+        pressure = part["pressure_drop_Pa"]
+        found |= {"pressure_drop": float(pressure.mean()), "pressure_drop_spread": float(pressure.std())}
+    return found
+
+
+def mixing_time(one: Array, other: Array, interval_s: float) -> float:
+    """Time after which the difference between two groups that began apart has fallen to 1/e [s].
+
+    The difference is that of the groups' shares on the side of the first, ``one + other - 1``: 1 at the
+    start, 0 once both are spread alike.
+
+    Parameters
+    ----------
+    one, other : (n_frames,) array
+        Share of either group that is still on its side, from the start on [1].
+    interval_s : float
+        Between frames [s].
+
+    Returns
+    -------
+    float
+        By a straight line between two frames; NaN where it has not fallen so far.
+    """
+    apart = one + other - 1.0
+    below = np.flatnonzero(apart <= MIXED)
+    if not below.size or below[0] == 0:
+        return float("nan")
+    after = int(below[0])
+    part = (apart[after - 1] - MIXED) / (apart[after - 1] - apart[after])
+    return float((after - 1 + part) * interval_s)
+
+
+def granular_temperature(
+    cells: NDArray[np.int32], vx: NDArray[np.floating], vz: NDArray[np.floating], n_cells: int
+) -> float:
+    """Mean square of a component of the velocity about the mean of its cell and frame [m2/s2].
+
+    Parameters
+    ----------
+    cells : (n_frames, n_particles) int array
+    vx, vz : (n_frames, n_particles) array
+        [m/s].
+    n_cells : int
+
+    Returns
+    -------
+    float
+        Of x and z alike (two components of three), each cell by its degrees of freedom, its particles
+        less one; NaN where no cell holds two.
+    """
+    squares = freedom = 0.0
+    for places, *velocity in zip(cells, vx, vz, strict=True):
+        number = np.bincount(places, minlength=n_cells)
+        freedom += float((number[number > 0] - 1).sum())
+        for component in velocity:
+            component = np.asarray(component, np.float64)
+            total = np.bincount(places, component, n_cells)
+            squares += float((component**2).sum() - (total**2 / np.maximum(number, 1)).sum())
+    return squares / (2 * freedom) if freedom > 0 else float("nan")
+
+
+def realisations(
+    runs: Sequence[Run], series: Sequence[Path], mixing: Sequence[Path], case: Case, starts: Sequence[Start]
+) -> Reference:
+    """The reference of a case.
+
+    Parameters
+    ----------
+    runs : sequence of Run
+        The run, and the repeats whose positions are there.
+    series : sequence of Path
+        ``bed_series.csv`` of each of them.
+    mixing : sequence of Path
+        ``mixing.csv`` of all repeats; may be empty.
+    case : Case
+    starts : sequence of Start
+        Of the run: without repeats each gives a curve, with repeats the first one alone.
+
+    Returns
+    -------
+    Reference
+
+    Raises
+    ------
+    UserError
+        A repeat has other times, or a run lacks more than half of the window.
+    """
+    main, splits = runs[0], splits_of(case)
+    curves = [observed_curves(main, start, splits)[1:] for start in starts]
+    if mixing:
+        n_times = len(curves[0]) + 1
+        tables = [pd.read_csv(file) for file in mixing]
+        curves = [
+            curves[0], *(curves_of(table, table["source"].iloc[0], n_times)[1:] for table in tables)
+        ]  # fmt: skip
+    seen = [
+        scalars_seen(run, read_series(file), case) for run, file in zip(runs, series, strict=True)
+    ]  # fmt: skip
+    scalars = {name: tuple(one[name] for one in seen if name in one) for name in seen[0]}
+    densities = np.stack([densities_seen(run, case) for run in runs])
+    return Reference(stacked(curves), bool(mixing), densities, scalars)

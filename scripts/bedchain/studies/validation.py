@@ -1,0 +1,203 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""The simulated bed at the points where one was measured, and how far the two are apart."""
+
+from pathlib import Path
+from typing import NamedTuple
+
+import numpy as np
+import pandas as pd
+from numpy.typing import NDArray
+
+from bedchain.errors import UserError
+from bedchain.measures.slices import QUANTITIES, Boxes, boxes_around, profile, solids_in_boxes
+from bedchain.uncertainty.bands import band, block_weights
+
+BLOCK_S = 0.5  # of the bands: several bubbles
+STRIP_M = 1.9e-3  # width of a strip: the distance of measured points across the bed
+SLICE_M = 4e-3  # height of a slice: about three particles, short against the distance of measured heights
+POINT_COLUMNS = ("quantity", "height_m", "position_x_m", "value")
+
+
+class Bed(NamedTuple):
+    """What profiles are made of.
+
+    Attributes
+    ----------
+    frames : (n_frames, 4, n_particles) ndarray
+        x, z [m], vx, vz [m/s] over a window of time.
+    interval_s : float
+        Between frames [s].
+    radius_m, width_m, depth_m : float
+        Of a particle, of the bed along x and y [m].
+    """
+
+    frames: np.ndarray
+    interval_s: float
+    radius_m: float
+    width_m: float
+    depth_m: float
+
+
+def simulated(bed: Bed, quantity: str, height_m: float, x_m: np.ndarray) -> tuple[pd.DataFrame, np.ndarray]:
+    """Profile across the bed with its 95 % band, from frames drawn again in blocks.
+
+    Parameters
+    ----------
+    bed : Bed
+    quantity : str
+        Of `QUANTITIES`.
+    height_m : float
+        Middle of the slice [m].
+    x_m : (n_positions,) ndarray
+        Middles of the strips [m].
+
+    Returns
+    -------
+    table : DataFrame
+        quantity, height_m, position_x_m, simulated, ci_low, ci_high.
+    replicates : (REPLICATES, n_positions) ndarray
+        In the quantity's unit.
+    """
+    boxes = boxes_around(x_m, STRIP_M, height_m, SLICE_M, bed.width_m, bed.depth_m)
+    solids = np.stack([solids_in_boxes(x, z, vz, bed.radius_m, boxes) for x, z, _, vz in bed.frames])
+    block = min(max(1, round(BLOCK_S / bed.interval_s)), len(solids))
+    value, replicates = profile_with_band(quantity, solids, boxes, block)
+    low, high = band(replicates)
+    names = {"quantity": quantity, "height_m": height_m, "position_x_m": x_m}
+    return pd.DataFrame(names | {"simulated": value, "ci_low": low, "ci_high": high}), replicates
+
+
+def compare(points: pd.DataFrame, bed: Bed) -> tuple[pd.DataFrame, pd.DataFrame]:
+    """Simulated values at the measured points, and how far they are off.
+
+    Parameters
+    ----------
+    points : DataFrame
+        Of `profiles.read_points`.
+    bed : Bed
+
+    Returns
+    -------
+    table : DataFrame
+        quantity, height_m, position_x_m, measured, simulated, ci_low, ci_high.
+    metrics : DataFrame
+        Of `profiles.difference_metrics`, over all points of a quantity and for each height.
+    """
+    tables, metrics = [], []
+    for quantity, of_quantity in points.groupby("quantity", sort=False):
+        parts = []
+        for height, at in of_quantity.groupby("height_m"):
+            table, replicates = simulated(bed, quantity, height, at["position_x_m"].to_numpy())
+            table.insert(3, "measured", at["value"].to_numpy())
+            parts.append((f"_{1e3 * height:g}_mm", table, replicates))
+        together = pd.concat([table for _, table, _ in parts]), np.hstack([drawn for *_, drawn in parts])
+        name, unit = QUANTITIES[quantity]
+        for where, table, replicates in [("", *together), *parts]:
+            values = table["simulated"].to_numpy(), replicates, table["measured"].to_numpy()
+            metrics += difference_metrics(name + where, unit, *values)
+        tables.append(together[0])
+    return pd.concat(tables, ignore_index=True), pd.DataFrame(metrics)
+
+
+def read_points(file: Path) -> pd.DataFrame:
+    """Measured points of a case.
+
+    Parameters
+    ----------
+    file : Path
+        Columns quantity (of `QUANTITIES`), height_m, position_x_m, value; lines with ``#`` are comments.
+
+    Returns
+    -------
+    DataFrame
+
+    Raises
+    ------
+    UserError
+        The file is missing, lacks a column, names another quantity or holds no number.
+    """
+    try:
+        table = pd.read_csv(file, comment="#")
+    except (OSError, ValueError) as error:
+        raise UserError(
+            f"{file}: no measured points ({error}); only cases with them can be validated"
+        ) from error
+    if missing := [name for name in POINT_COLUMNS if name not in table]:
+        raise UserError(f"{file} lacks the columns {', '.join(missing)}; add them")
+    if unknown := sorted(set(table["quantity"]) - set(QUANTITIES)):
+        raise UserError(
+            f"{file}: unknown quantity {', '.join(map(str, unknown))}; known: {', '.join(QUANTITIES)}"
+        )
+    numbers = table[list(POINT_COLUMNS[1:])].apply(pd.to_numeric, errors="coerce")
+    if numbers.isna().to_numpy().any() or table.empty:
+        row = int(numbers.isna().any(axis=1).argmax()) if len(table) else 0
+        raise UserError(f"{file}: row {row + 1} of the points is no number; correct it")
+    return table.assign(**{name: numbers[name] for name in numbers})
+
+
+def rms(values: NDArray[np.float64]) -> NDArray[np.float64]:
+    """Root of the mean square over the last axis."""
+    return np.asarray(np.sqrt((values**2).mean(axis=-1)))
+
+
+def difference_metrics(
+    name: str,
+    unit: str,
+    simulated: NDArray[np.float64],
+    replicates: NDArray[np.float64],
+    measured: np.ndarray,
+) -> list[dict[str, object]]:
+    """How far simulated points are from measured ones: rms and mean, with 95 % bands.
+
+    Parameters
+    ----------
+    name, unit : str
+        Of the quantity.
+    simulated, measured : (n_points,) ndarray
+        In the unit.
+    replicates : (n_replicates, n_points) ndarray
+        Simulated points from frames drawn again.
+
+    Returns
+    -------
+    list of dict
+        quantity, source, value, unit, ci_low, ci_high.
+    """
+    rows: list[dict[str, object]] = []
+    for what, over in (("rms", rms), ("mean", lambda values: values.mean(axis=-1))):
+        low, high = band(over(replicates - measured))
+        value = float(over(simulated - measured))
+        rows.append(
+            {
+                "quantity": f"{name}_error_{what}", "source": "dem", "value": value, "unit": unit,
+                "ci_low": float(low), "ci_high": float(high),
+            }
+        )  # fmt: skip
+    return rows
+
+
+REPLICATES, SEED = 400, 11  # of the bands only: the same data give the same band
+
+
+def profile_with_band(
+    quantity: str, solids: NDArray[np.float64], boxes: Boxes, block: int
+) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+    """Profile over all frames, and those of frames drawn again by moving blocks.
+
+    Parameters
+    ----------
+    quantity : str
+    solids : (n_frames, 2, n_boxes) ndarray
+    boxes : Boxes
+    block : int
+        Frames in a block; all profiles of a run draw the same blocks, so they can be put together.
+
+    Returns
+    -------
+    (n_boxes,) ndarray, (REPLICATES, n_boxes) ndarray
+        In the quantity's unit.
+    """
+    rng, n_frames = np.random.default_rng(SEED), len(solids)
+    weights = np.stack([block_weights(n_frames, block, rng) for _ in range(REPLICATES)]) / n_frames
+    drawn = np.tensordot(weights, solids, axes=1)
+    return profile(quantity, solids.mean(axis=0), boxes), profile(quantity, drawn, boxes)

@@ -1,0 +1,113 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Gas through a settled random bed held in place: pressure drop by its own voidage, flow at its surface."""
+
+from pathlib import Path
+from typing import NamedTuple
+
+import numpy as np
+
+from bedchain.dem.gas_field import read_gas_field
+from bedchain.dem.lattices import at_rest, loose, rows_of_voidage
+from bedchain.dem.small_cases import Setup, run_gas, run_particles
+from bedchain.studies.verification.laws import Suspension, ergun_gradient, suspension
+from bedchain.studies.verification.plots import Curve, draw
+from bedchain.studies.verification.rows import Row
+
+NEAR = 0.05
+NEAR_INSIDE = 0.02
+NEAR_FLOW = 0.20  # cells across the surface share a jump of voidage from 0.4 to 1
+VELOCITIES = (0.2, 0.5, 1.0, 2.0)  # [m/s], a decade
+WIDTH, HEIGHT, NUMBER, DIAMETER = 0.04, 0.12, 2800, 1e-3  # settles about 7 cm deep
+CELL = 5e-3  # [m], of the gas: the voidage is measured in rows of it
+SETTLE = 0.4  # [s], the fall takes 0.15
+HELD = 0.02  # [s], a hundred relaxation times of the gas
+BED = 0.5  # voidage below which a row is bed
+SOURCE = "Ergun 1952, Chem. Eng. Prog. 48, 89, eq. (11), over rows of the voidage measured from the positions"
+
+
+class Flow(NamedTuple):
+    """What the gas does at one velocity.
+
+    Attributes
+    ----------
+    drop : float
+        Pressure drop from the inlet to the outlet [Pa].
+    pressure : (n_rows,) ndarray
+        Mean in each row of cells [Pa].
+    carried : (n_rows,) ndarray
+        Voidage times rising velocity, mean in each row, over the superficial velocity [1].
+    """
+
+    drop: float
+    pressure: np.ndarray
+    carried: np.ndarray
+
+
+def random_bed(folder: Path, width: float, height: float, number: int, **contact: float) -> Setup:
+    """A loose heap above the bottom of a box, about to settle."""
+    sections = {
+        "bed": {"width_m": width, "height_m": height},
+        "contact": contact,
+        "time": {"frame_interval_s": HELD},
+    }
+    return Setup(folder, sections, loose(width, number, DIAMETER, np.random.default_rng(1)))
+
+
+def settled(work: Path, name: str, heap: Setup, numbers: dict[str, float]) -> Setup:
+    """The same spheres after the fall, at rest, as the start of a case of its own."""
+    last = run_particles(heap, SETTLE)[-1]
+    return Setup(work / name, heap.sections, at_rest(last[:, 1], last[:, 2], DIAMETER), numbers)
+
+
+def rows_of(case: Path, name: str) -> np.ndarray:
+    """A field of the gas by rows of cells from the bottom up, (n_rows, n_columns[, 3])."""
+    found = read_gas_field(case, name)
+    heights = found.z_m.round(6)
+    order = np.lexsort((found.x_m, heights))
+    return np.asarray(found.values[order].reshape(len(set(heights)), -1, *found.values.shape[1:]))
+
+
+def flow_through(bed: Setup, solver: Path, velocity: float) -> Flow:
+    """Run the gas at one velocity until it is steady."""
+    table = run_gas(bed, solver, HELD, f"constant {velocity}")
+    gas = bed.folder / "gas"
+    pressure = suspension(bed).gas_density * rows_of(gas, "p").mean(axis=1)
+    rising = (rows_of(gas, "voidage") * rows_of(gas, "U")[..., 2]).mean(axis=1)
+    return Flow(float(table["pressure_drop_Pa"].iloc[-1]), pressure, rising / velocity)
+
+
+def expected_drop(of: Suspension, z: np.ndarray, edges: np.ndarray, velocity: float) -> float:
+    """Ergun's pressure drop over rows between planes [Pa], each with its measured voidage."""
+    voidage = rows_of_voidage(z, DIAMETER, edges, WIDTH * DIAMETER)
+    gradients = np.array([ergun_gradient(of, e, velocity) for e in voidage])
+    return float((gradients * np.diff(edges)).sum())
+
+
+def check(work: Path, solver: Path, figures: Path) -> list[Row]:
+    """Rows and figure of the settled bed."""
+    bed = settled(work, "bed_held", random_bed(work / "bed_settling", WIDTH, HEIGHT, NUMBER), {"frozen": 1})
+    z = bed.particles[:, 1]
+    edges = np.linspace(0, HEIGHT, round(HEIGHT / CELL) + 1)
+    inside = np.flatnonzero(rows_of_voidage(z, DIAMETER, edges, WIDTH * DIAMETER) < BED)[1:-1]
+    centres = (edges[inside] + edges[inside + 1]) / 2
+    rows, drops, theory = [], [], []
+    for velocity in VELOCITIES:
+        flow, of = flow_through(bed, solver, velocity), suspension(bed)
+        whole, part = (expected_drop(of, z, planes, velocity) for planes in (edges, centres))
+        found = flow.pressure[inside[0]] - flow.pressure[inside[-1]]
+        off = float(np.abs(flow.carried - 1).max())
+        name = f"settled bed at {velocity:g} m/s"
+        rows += [
+            Row(f"{name}: pressure drop [Pa]", flow.drop, whole, NEAR, SOURCE),
+            Row(f"{name}: pressure drop between rows inside [Pa]", found, part, NEAR_INSIDE, SOURCE),
+            Row(
+                f"{name}: largest gap of a row's flow from that given [1]", off, 0, NEAR_FLOW, "div(e U) = 0"
+            ),
+        ]
+        drops.append(flow.drop)
+        theory.append(whole)
+    curve = Curve("settled random bed", np.array(VELOCITIES), np.array(drops), np.array(theory))
+    draw(
+        figures / "settled_bed", [curve], "superficial velocity [m/s]", "pressure drop [Pa]", logarithmic=True
+    )
+    return rows

@@ -1,0 +1,186 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""The archive of a simulated bed, cases/<case>/reference/: what the figures need of it, and its origin."""
+
+import hashlib
+import json
+from pathlib import Path
+from typing import Any
+
+from bedchain.case.schema import Case, Schema, case_value, schema_keys
+from bedchain.errors import UserError
+from bedchain.physics.whole_numbers import is_multiple, ratio
+
+PROVENANCE = "provenance.json"
+POSITIONS = "positions.xz"
+SERIES = "bed_series.csv"
+REPEATS = "repeats.csv"
+GAS = "gas.npz"
+# numbers that reach the solvers without a name of their own there
+DERIVED = ("gas.cell_size_m", "time.frame_interval_s")
+SIMULATE = "or simulate the bed: --config reference=simulate"
+
+
+def solver_keys(case: Case, schema: Schema) -> dict[str, Any]:
+    """Every key of a case that the particles and the gas depend on.
+
+    Parameters
+    ----------
+    case : dict
+        A checked case.
+    schema : dict
+        Its schema.
+
+    Returns
+    -------
+    dict
+        Dotted key -> value.
+    """
+    keys = schema_keys(schema)
+    return {key: case_value(case, key) for key in keys if "x-variable" in keys[key] or key in DERIVED}
+
+
+def keys_hash(keys: dict[str, Any]) -> str:
+    """SHA-256 of keys and values, independent of their order."""
+    return hashlib.sha256(json.dumps(keys, sort_keys=True).encode()).hexdigest()
+
+
+def file_hash(file: Path) -> str:
+    """SHA-256 of a file's bytes."""
+    with file.open("rb") as stream:
+        return hashlib.file_digest(stream, "sha256").hexdigest()
+
+
+def read_provenance(folder: Path) -> dict[str, Any]:
+    """What an archive says of itself.
+
+    Parameters
+    ----------
+    folder : Path
+        ``cases/<case>/reference``.
+
+    Raises
+    ------
+    UserError
+        There is none, or it cannot be read.
+    """
+    try:
+        found = json.loads((folder / PROVENANCE).read_text(encoding="utf-8"))
+        _ = found["solver_keys"], found["start_s"], found["end_s"], found["history_s"], found["files"]
+    except (OSError, ValueError, KeyError) as error:
+        raise UserError(
+            f"{folder}: no readable archive of a bed ({error!r}); fetch it again, {SIMULATE}"
+        ) from error
+    return dict(found)
+
+
+def check_archive(folder: Path, case: Case, schema: Schema) -> dict[str, Any]:
+    """Refuse an archive that is not of this case, or does not hold what the case asks for.
+
+    Parameters
+    ----------
+    folder : Path
+        ``cases/<case>/reference``.
+    case : dict
+        A checked case.
+    schema : dict
+        Its schema.
+
+    Returns
+    -------
+    dict
+        Its provenance.
+
+    Raises
+    ------
+    UserError
+        With everything that does not fit.
+    """
+    found = read_provenance(folder)
+    wrong = [*_other_keys(found, case, schema), *_missing_times(found, case), *_uneven_lines(found, case)]
+    if wrong:
+        lines = "\n".join(f"  {line}" for line in wrong)
+        raise UserError(f"{folder} does not serve this case:\n{lines}\nchange the case, {SIMULATE}")
+    return found
+
+
+def _other_keys(found: dict[str, Any], case: Case, schema: Schema) -> list[str]:
+    archived, parts = found["solver_keys"], schema_keys(schema)
+    wrong = [
+        f"{key} is {case_value(case, key)!r} and was {value!r} in the simulation: it is another bed"
+        for key, value in archived.items()
+        if case_value(case, key) != value
+    ]
+    # a key that is younger than the archive stands for what was always so, by its default
+    wrong += [
+        f"{key} is {value!r}; the archive is older than this key, and has its default"
+        for key, value in solver_keys(case, schema).items()
+        if key not in archived and value != _default(parts[key], case)
+    ]
+    return wrong
+
+
+def _default(part: Schema, case: Case) -> Any:
+    if "x-default-of" in part:
+        return case_value(case, part["x-default-of"]) * part.get("x-default-factor", 1)
+    return part.get("default")
+
+
+def _missing_times(found: dict[str, Any], case: Case) -> list[str]:
+    start, end = found["start_s"], found["end_s"]
+    wrong = [
+        f"{name}.{edge} is {case[name][edge]:g} s, the archive holds {start:g} to {end:g} s"
+        for name in ("learning", "comparison")
+        for edge in ("start_s", "end_s")
+        if not start <= case[name][edge] <= end
+    ]
+    interval = case["time"]["frame_interval_s"]
+    frames = ratio(end, interval) - ratio(start, interval) + ratio(found["history_s"], interval) + 1
+    if found["n_frames"] != frames:
+        wrong.append(f"it holds {found['n_frames']} frames of {frames}: the simulation was not finished")
+    if found["repeats"] < case["comparison"]["repeats"]:
+        wrong.append(
+            f"comparison.repeats is {case['comparison']['repeats']}, the archive holds {found['repeats']}"
+        )
+    return wrong
+
+
+def _uneven_lines(found: dict[str, Any], case: Case) -> list[str]:
+    level = found["level_m"]
+    bed, cells, mixing = case["bed"], case["cells"], case["mixing"]
+    wrong = [
+        f"cells.{name} {cells[name]}: {length:g} m in so many cells are no multiple of {level:g} m, to which "
+        f"positions are rounded; take a divisor of {round(length / level)}"
+        for name, length in (("columns", bed["width_m"]), ("rows", bed["height_m"]))
+        if ratio(length, level) % cells[name]
+    ]
+    wrong += [
+        f"mixing.{name} is {mixing[name]:g} m, no multiple of {level:g} m, to which positions are rounded"
+        for name in ("split_x_m", "split_z_m")
+        if not is_multiple(mixing[name], level)
+    ]
+    return wrong
+
+
+def check_files(folder: Path, provenance: dict[str, Any]) -> None:
+    """Refuse files that are not, byte by byte, those that were archived.
+
+    Parameters
+    ----------
+    folder : Path
+    provenance : dict
+        Of `read_provenance`.
+
+    Raises
+    ------
+    UserError
+        Names the first file that is missing or was changed.
+    """
+    for name, expected in provenance["files"].items():
+        file = folder / name
+        remedy = f"fetch it again (git checkout -- {file}), {SIMULATE}"
+        if not file.exists():
+            raise UserError(f"{file} is missing: {remedy}")
+        if file.stat().st_size != expected["bytes"]:
+            raise UserError(f"{file} has {file.stat().st_size} bytes, {expected['bytes']} expected: {remedy}")
+        if file_hash(file) != expected["sha256"]:
+            raise UserError(f"{file} is corrupted, its checksum is not the archived one: {remedy}")

@@ -1,0 +1,170 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""The cells of all particles in all frames on disk: written and read a chunk of frames at a time."""
+
+import zipfile
+from pathlib import Path
+from typing import NamedTuple
+
+import numpy as np
+
+from bedchain.errors import DataError, UserError
+from bedchain.files import complete, map_array, write_npy_header
+from bedchain.trajectory.chunks import read_frames
+from bedchain.trajectory.frames import Frames, window
+from bedchain.trajectory.grid import Grid
+from bedchain.trajectory.store import open_trajectory
+
+# about 16 MB of positions and velocities at a time
+CHUNK_VALUES = 1_000_000
+# frames, in lags, that lead up to a start: more than any model's states look back
+HISTORY_LAGS = 4
+
+
+class CellStore(NamedTuple):
+    """Cells of all particles in all frames.
+
+    Attributes
+    ----------
+    cells : (n_frames, n_particles) ndarray of int32
+        Memory map: only what is used is read.
+    times_s : (n_frames,) ndarray
+        Times of the frames [s].
+    grid : Grid
+    """
+
+    cells: np.ndarray
+    times_s: np.ndarray
+    grid: Grid
+
+
+def write_cells(trajectory: np.ndarray, times_s: np.ndarray, grid: Grid, target: Path) -> None:
+    """Assign every particle of every frame to its cell, a chunk of frames at a time.
+
+    Parameters
+    ----------
+    trajectory : (n_frames, 4, n_particles) ndarray
+        Rows x, z [m], ...
+    times_s : (n_frames,) ndarray
+        Times of the frames [s].
+    grid : Grid
+    target : Path
+        ``cells.npz``: cells, times_s, columns, rows, width_m, height_m.
+    """
+    n_frames, _, n_particles = trajectory.shape
+    chunk = max(1, CHUNK_VALUES // n_particles)
+    small = {"columns": grid.columns, "rows": grid.rows, "width_m": grid.width_m, "height_m": grid.height_m}
+    with complete(target) as temporary, zipfile.ZipFile(temporary, "w") as archive:
+        # what numpy.savez makes, without the whole array in memory
+        with archive.open("cells.npy", "w", force_zip64=True) as stream:
+            write_npy_header(stream, (n_frames, n_particles), np.dtype(np.int32))
+            for first in range(0, n_frames, chunk):
+                part = read_frames(trajectory, first, min(first + chunk, n_frames))
+                stream.write(grid.cell_of(part[:, 0], part[:, 1], first).tobytes())
+        for name, value in {"times_s": times_s, **small}.items():
+            with archive.open(f"{name}.npy", "w") as stream:
+                np.lib.format.write_array(stream, np.asarray(value))
+
+
+def open_cells(path: Path) -> CellStore:
+    """Cells written by :func:`write_cells`, as a memory map.
+
+    Parameters
+    ----------
+    path : Path
+        ``cells.npz``.
+
+    Returns
+    -------
+    CellStore
+
+    Raises
+    ------
+    UserError
+        The file is not what assign_cells writes.
+    """
+    try:
+        with np.load(path) as small:
+            times_s = small["times_s"]
+            grid = Grid(
+                float(small["width_m"]), float(small["height_m"]), int(small["columns"]), int(small["rows"])
+            )
+        cells = map_array(path, "cells")
+    except (OSError, DataError, ValueError, KeyError, zipfile.BadZipFile) as error:
+        raise UserError(f"{path}: not readable as cells ({error}); delete it and run again") from error
+    return CellStore(cells, times_s, grid)
+
+
+def window_frames(trajectory: Path, metadata: Path, store: CellStore, start_s: float, end_s: float) -> Frames:
+    """Frames of a window, positions and cells, as memory maps.
+
+    Parameters
+    ----------
+    trajectory, metadata : Path
+        ``trajectory.npy`` and ``trajectory.json``.
+    store : CellStore
+    start_s, end_s : float
+        The window, both ends included [s].
+
+    Returns
+    -------
+    Frames
+    """
+    return _all_frames(trajectory, metadata, store).part(window(store.times_s, start_s, end_s))
+
+
+def frames_up_to(trajectory: Path, metadata: Path, store: CellStore, start_s: float, lag: int) -> Frames:
+    """The frame of a start, and before it those that a chain may need to know where the particles come from.
+
+    Parameters
+    ----------
+    trajectory, metadata : Path
+        ``trajectory.npy`` and ``trajectory.json``.
+    store : CellStore
+    start_s : float
+        Time of the last frame given [s].
+    lag : int
+        Frames in a step of the chain.
+
+    Returns
+    -------
+    Frames
+    """
+    start = frame_at(store.times_s, start_s)
+    first = max(0, start - HISTORY_LAGS * lag)
+    return _all_frames(trajectory, metadata, store).part(slice(first, start + 1))
+
+
+def _all_frames(trajectory: Path, metadata: Path, store: CellStore) -> Frames:
+    values, _ = open_trajectory(trajectory, metadata)
+    if values.shape[::2] != store.cells.shape:
+        raise UserError(
+            f"{trajectory} and the cells differ in frames or particles: delete cells.npz, run again"
+        )
+    x, z, vx, vz = (values[:, row] for row in range(4))
+    return Frames(store.times_s, x, z, store.cells, vx, vz)
+
+
+def frame_at(times_s: np.ndarray, time_s: float) -> int:
+    """Number of the frame nearest to a time.
+
+    Parameters
+    ----------
+    times_s : (n_frames,) ndarray
+        Times of the frames [s].
+    time_s : float
+        Wanted time [s].
+
+    Returns
+    -------
+    int
+
+    Raises
+    ------
+    UserError
+        No frame within half an interval.
+    """
+    index = int(np.argmin(np.abs(times_s - time_s)))
+    interval = (times_s[-1] - times_s[0]) / max(len(times_s) - 1, 1)
+    if abs(times_s[index] - time_s) > 0.5 * interval:
+        raise UserError(f"no frame at {time_s:g} s: frames go from {times_s[0]:g} s to {times_s[-1]:g} s")
+    return index

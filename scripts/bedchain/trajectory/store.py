@@ -1,0 +1,215 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""One columnar trajectory out of the frames that a run of the DEM left behind."""
+
+import json
+import logging
+import re
+import shutil
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+from tqdm import tqdm
+
+from bedchain.errors import UserError
+from bedchain.files import complete, write_npy_header
+from bedchain.trajectory.dumps import frame_of, read_dump
+
+LOG = logging.getLogger(__name__)
+
+STORED = ("x", "z", "vx", "vz")
+# frames are multiples of the DEM step; their times differ from the grid by round-off only
+TIME_TOLERANCE = 1e-6
+DISK_RESERVE_BYTES = 50_000_000
+
+
+def read_manifest(path: Path) -> dict[str, Any]:
+    """Manifest of a DEM run (dem.json), with its frames checked for order and regular spacing.
+
+    Parameters
+    ----------
+    path : Path
+        ``dem.json``; the frames' files are given relative to its folder.
+
+    Returns
+    -------
+    dict
+
+    Raises
+    ------
+    UserError
+        The manifest is unreadable, empty, or a frame is missing, doubled or out of order.
+    """
+    try:
+        manifest = json.loads(path.read_text())
+        steps = np.array([frame["step"] for frame in manifest["frames"]], np.int64)
+        times = np.array([frame["time_s"] for frame in manifest["frames"]], float)
+        interval = float(manifest["frame_interval_s"])
+    except (OSError, ValueError, KeyError, TypeError) as error:
+        raise UserError(
+            f"{path}: no readable manifest of a DEM run ({error!r}); run run_dem again"
+        ) from error
+    if steps.size < 2:
+        raise UserError(f"{path}: lists {steps.size} frames, at least 2 are needed; simulate longer")
+    uneven = np.flatnonzero(np.abs(np.diff(times) - interval) > TIME_TOLERANCE * interval * steps.size)
+    backward = np.flatnonzero(np.diff(steps) <= 0)
+    for frame in [*backward, *uneven][:1]:
+        before, after = (f"{at} (step {steps[at]}, {times[at]:g} s)" for at in (frame, frame + 1))
+        raise UserError(
+            f"{path}: frame {after} follows frame {before}, not one interval of {interval:g} s later; "
+            f"{remedy(manifest['frames'][frame + 1]['file'])}"
+        )
+    return manifest
+
+
+def write_trajectory(
+    dem: Path, trajectory: Path, metadata: Path, width_m: float, height_m: float, progress: bool = True
+) -> dict[str, Any]:
+    """Check every frame of a run and write them as one array, one frame in memory at a time.
+
+    Parameters
+    ----------
+    dem : Path
+        The run's manifest, ``dem.json``, in the folder that the frames' files are relative to.
+    trajectory : Path
+        Gets float32 (n_frames, 4, n_particles): x, z [m], vx, vz [m/s], particles by id; NaN for velocities
+        that the dumps lack.
+    metadata : Path
+        Gets `trajectory_metadata`.
+    width_m, height_m : float
+        Size of the bed [m].
+    progress : bool
+        Show a bar with the time left on stderr.
+
+    Returns
+    -------
+    dict
+        The manifest.
+
+    Raises
+    ------
+    UserError
+        A frame is missing, cut off, or holds other particles than the first, or the dumps hold no positions;
+        nothing is written then.
+    """
+    manifest = read_manifest(dem)
+    frames, number = manifest["frames"], int(manifest["number"])
+    shape, bounds = (len(frames), len(STORED), number), {"x": width_m, "z": height_m}
+    _check_disk(trajectory, 4 * int(np.prod(shape)))
+    ids: np.ndarray | None = None
+    columns = manifest["columns"]
+    if absent := [name for name in STORED if name not in columns]:
+        if not {"x", "z"}.isdisjoint(absent):
+            raise UserError(f"the dumps hold {' '.join(columns)}, x and z are needed; write them again")
+        LOG.info("no %s in the dumps: models that need velocities take differences of positions", absent)
+    # a plain stream: the pages of a memory map would stay in memory until the end
+    with complete(trajectory) as temporary, temporary.open("wb") as stream:
+        write_npy_header(stream, shape, np.dtype(np.float32))
+        for index in tqdm(range(len(frames)), desc="parse_dumps", unit="frame", disable=not progress):
+            frame = _read_frame(manifest, index, dem.parent, ids, bounds)
+            ids = frame[columns.index("id")].astype(np.int64) if ids is None else ids
+            nothing = np.full(frame.shape[1], np.nan)
+            stored = [frame[columns.index(name)] if name in columns else nothing for name in STORED]
+            stream.write(np.array(stored, np.float32).tobytes())
+    assert ids is not None
+    with complete(metadata) as temporary:
+        temporary.write_text(json.dumps(trajectory_metadata(manifest, ids, width_m, height_m)))
+    return manifest
+
+
+def _read_frame(
+    manifest: dict[str, Any], index: int, folder: Path, ids: np.ndarray | None, bounds: dict[str, float]
+) -> np.ndarray:
+    """One checked frame; its errors name the frame, the file and the segment to run again."""
+    entry, columns = manifest["frames"][index], manifest["columns"]
+    try:
+        dump = read_dump(folder / entry["file"], columns)
+        if dump.step != entry["step"]:
+            raise UserError(f"its step is {dump.step}, {entry['step']} expected")
+        if len(dump.values) != manifest["number"]:
+            found = np.unique(dump.values[:, columns.index("id")])
+            absent = "" if ids is None else f", missing: id {_listed(np.setdiff1d(ids, found))}"
+            raise UserError(f"it holds {len(dump.values)} particles, {manifest['number']} expected{absent}")
+        return frame_of(dump, columns, ids, bounds)
+    except UserError as error:
+        wrong = (
+            str(error).replace(f"{folder / entry['file']}: ", "").replace(str(folder / entry["file"]), "it")
+        )
+        raise UserError(f"frame {index} of {entry['file']}: {wrong}; {remedy(entry['file'])}") from error
+
+
+def remedy(file: str) -> str:
+    """What to do about a bad frame: which segment to run again."""
+    segment = re.search(r"segment_(\d+)", file)
+    if segment is None:
+        return "delete the run's folder and run again"
+    folder = file[: segment.end()]
+    return (
+        f"rerun segment {int(segment[1])}: delete {folder}, the segments after it and dem.json, and run again"
+    )
+
+
+def trajectory_metadata(
+    manifest: dict[str, Any], ids: np.ndarray, width_m: float, height_m: float
+) -> dict[str, Any]:
+    """What the array of numbers does not say: times, ids, rows, size of the bed.
+
+    Parameters
+    ----------
+    manifest : dict
+    ids : (n_particles,) ndarray of int64
+    width_m, height_m : float
+        Size of the bed [m].
+
+    Returns
+    -------
+    dict
+        Ready for ``json.dump``.
+    """
+    return {
+        "times_s": [frame["time_s"] for frame in manifest["frames"]],
+        "steps": [frame["step"] for frame in manifest["frames"]],
+        "ids": [int(ids[0]), int(ids[-1])],
+        "number": int(ids.size),
+        "columns": list(STORED),
+        "units": ["m", "m", "m/s", "m/s"],
+        "frame_interval_s": manifest["frame_interval_s"],
+        "width_m": width_m,
+        "height_m": height_m,
+    }
+
+
+def open_trajectory(path: Path, metadata_path: Path) -> tuple[np.ndarray, dict[str, Any]]:
+    """Memory map of a trajectory and its metadata.
+
+    Parameters
+    ----------
+    path, metadata_path : Path
+        ``trajectory.npy`` and ``trajectory.json``.
+
+    Returns
+    -------
+    (n_frames, 4, n_particles) ndarray of float32
+        Rows x, z [m], vx, vz [m/s].
+    dict
+        See :func:`trajectory_metadata`.
+    """
+    metadata = json.loads(metadata_path.read_text())
+    store = np.load(path, mmap_mode="r")
+    shape = (len(metadata["times_s"]), len(STORED), metadata["number"])
+    if store.shape != shape:
+        raise UserError(f"{path} has the shape {store.shape}, {shape} expected: delete it and run again")
+    return store, metadata
+
+
+def _check_disk(target: Path, needed: int) -> None:
+    free = shutil.disk_usage(target.parent).free
+    if free < needed + DISK_RESERVE_BYTES:
+        raise UserError(
+            f"{target.parent}: {free / 1e6:.0f} MB free, {needed / 1e6:.0f} MB needed for {target.name}; "
+            "free disk space and run again"
+        )
+
+
+def _listed(ids: np.ndarray) -> str:
+    return ", ".join(f"{number:.0f}" for number in ids[:5]) + (" ..." if ids.size > 5 else "")

@@ -1,0 +1,208 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Error bars from moving blocks of time.
+
+Particles of one bubble move together and frames that follow each other are alike, so the binomial error of
+as many independent particles is far too small. Whole blocks of steps are drawn again instead (Kuensch
+1989), long against the time over which the bed forgets.
+"""
+
+from collections.abc import Callable
+from typing import TypeVar
+
+import numpy as np
+from numpy.typing import NDArray
+
+from bedchain.errors import DataError
+from bedchain.trajectory.frames import Frames
+
+Learned = TypeVar("Learned")
+
+
+def block_weights(n_steps: int, block: int, rng: np.random.Generator) -> NDArray[np.int64]:
+    """How many times each step counts in one replicate: blocks drawn with replacement, the last cut to fit.
+
+    Parameters
+    ----------
+    n_steps : int
+        Steps in the window.
+    block : int
+        Steps in a block; several blocks must fit into the window for a meaningful band.
+    rng : numpy Generator
+        Draws where the blocks begin.
+
+    Returns
+    -------
+    (n_steps,) int64 array
+        Sums to ``n_steps``.
+
+    Raises
+    ------
+    DataError
+        The block is empty or longer than the window.
+    """
+    if not 1 <= block <= n_steps:
+        raise DataError(
+            f"blocks of {block} steps do not fit a window of {n_steps} steps: take 1 to {n_steps // 5 or 1}"
+        )
+    n_blocks = -(-n_steps // block)
+    first = rng.integers(0, n_steps - block + 1, n_blocks)
+    steps = (first[:, None] + np.arange(block)).ravel()[:n_steps]
+    return np.bincount(steps, minlength=n_steps).astype(np.int64)
+
+
+def block_means(
+    series: NDArray[np.floating], block: int, replicates: int, rng: np.random.Generator
+) -> NDArray[np.float64]:
+    """Means of a series over time, drawn again by blocks.
+
+    Parameters
+    ----------
+    series : (n_steps, ...) array
+        Anything observed at each step: densities, or mixing curves by the step they start at.
+    block : int
+        Steps in a block.
+    replicates : int
+        Means wanted.
+    rng : numpy Generator
+        Draws the blocks.
+
+    Returns
+    -------
+    (replicates, ...) array
+    """
+    flat = np.asarray(series, float).reshape(len(series), -1)
+    means = np.empty((replicates, flat.shape[1]))
+    for replicate in range(replicates):
+        means[replicate] = block_weights(len(series), block, rng) @ flat / len(series)
+    return means.reshape(replicates, *series.shape[1:])
+
+
+def block_chains(
+    learn: Callable[[NDArray[np.int64]], Learned],
+    evaluate: Callable[[Learned], NDArray[np.float64]],
+    n_steps: int,
+    block: int,
+    replicates: int,
+    rng: np.random.Generator,
+) -> NDArray[np.float64]:
+    """Whatever a chain gives, from chains learned again on blocks of the learning window.
+
+    Parameters
+    ----------
+    learn : callable
+        From how many times each step counts, (n_steps,), to a chain: `registry.learn` with ``step_weights``.
+    evaluate : callable
+        From a chain to an array, always of one shape: mixing curves, a density.
+    n_steps : int
+        Steps that start in the learning window, ``n_frames - lag``.
+    block : int
+        Steps in a block.
+    replicates : int
+        Chains to learn.
+    rng : numpy Generator
+        Draws the blocks.
+
+    Returns
+    -------
+    (replicates, ...) array
+    """
+    return np.stack([evaluate(learn(block_weights(n_steps, block, rng))) for _ in range(replicates)])
+
+
+def band(
+    samples: NDArray[np.float64], level: float = 0.95
+) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+    """Ends of the middle part of the replicates (percentile band).
+
+    Parameters
+    ----------
+    samples : (replicates, ...) array
+        From `block_means` or `block_chains`.
+    level : float
+        Share of the replicates inside [1].
+
+    Returns
+    -------
+    low, high : (...) array
+    """
+    low, high = np.quantile(samples, [(1 - level) / 2, (1 + level) / 2], axis=0)
+    return low, high
+
+
+def correlation_steps(series: NDArray[np.floating]) -> float:
+    """Integrated autocorrelation time of a series, ``1 + 2 sum(rho)`` up to the first rho below 0 [steps].
+
+    Parameters
+    ----------
+    series : (n_steps,) array
+        Such as the share of the particles that are left, or the height of their centre of mass.
+
+    Returns
+    -------
+    float
+        At least 1. Blocks should be several times as long.
+    """
+    centred = np.asarray(series, float) - np.mean(series)
+    power = float(centred @ centred)
+    if power == 0:
+        return 1.0
+    size = 2 * len(centred)
+    spectrum = np.abs(np.fft.rfft(centred, size)) ** 2
+    rho = np.fft.irfft(spectrum, size)[: len(centred)] / power
+    below = np.flatnonzero(rho < 0)
+    end = int(below[0]) if below.size else len(rho)
+    return max(1.0, 1.0 + 2.0 * float(rho[1:end].sum()))
+
+
+def block_length(frames: Frames, split_x_m: float, lag: int) -> int:
+    """Length of the blocks that are drawn again: longer than the bed remembers, short against the window.
+
+    Parameters
+    ----------
+    frames : Frames
+        The learning window.
+    split_x_m : float
+        The line between left and right [m].
+    lag : int
+        Frames in a step of the chain.
+
+    Returns
+    -------
+    int
+        Steps.
+    """
+    left = np.array([(x < split_x_m).mean() for x in frames.x_m])
+    height = np.array([z.mean() for z in frames.z_m])
+    remembered = max(correlation_steps(left), correlation_steps(height), lag)
+    return int(np.clip(BLOCK_CORRELATIONS * remembered, 1, max(1, (len(left) - lag) // FEWEST_BLOCKS)))
+
+
+# blocks several times as long as the bed remembers, but at least this many of them in the window
+BLOCK_CORRELATIONS, FEWEST_BLOCKS = 3, 5
+
+
+REPLICATES = 400
+
+
+# of the bands only: the same data give the same band
+BAND_SEED = 11
+
+
+def memory(frames: Frames, split_x_m: float) -> int:
+    """Frames after which the bed has forgotten where it was, rounded up.
+
+    Parameters
+    ----------
+    frames : Frames
+        The learning window.
+    split_x_m : float
+        The line between left and right [m].
+
+    Returns
+    -------
+    int
+        The longer of the integrated correlation times of the share left and of the mean height [1].
+    """
+    left = np.array([(x < split_x_m).mean() for x in frames.x_m])
+    height = np.array([z.mean() for z in frames.z_m])
+    return int(np.ceil(max(correlation_steps(left), correlation_steps(height))))

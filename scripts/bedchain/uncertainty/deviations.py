@@ -1,0 +1,213 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Errors of curves from several starts and runs, beside the spread of the DEM itself, with intervals.
+
+Curves of different starts end at different times: arrays are padded with NaN, which nothing counts.
+"""
+
+from collections.abc import Callable, Sequence
+
+import numpy as np
+from numpy.typing import NDArray
+
+from bedchain.measures.batch import total_variation
+from bedchain.uncertainty.bands import band
+
+Array = NDArray[np.float64]
+
+# columns of the curves (in the order of `mixing.GROUPS`) that are summed up together
+SIDES = {
+    "left": (0,),
+    "right": (1,),
+    "low": (2,),
+    "up": (3,),
+    "radial": (0, 1),
+    "axial": (2, 3),
+    "mixing": (0, 1, 2, 3),
+}
+
+
+def stacked(curves: Sequence[Array]) -> Array:
+    """Curves of unequal length as one array, (n_curves, n_times, ...), NaN where a curve has ended."""
+    length = max(len(curve) for curve in curves)
+    table = np.full((len(curves), length, *curves[0].shape[1:]), np.nan)
+    for row, curve in zip(table, curves, strict=True):
+        row[: len(curve)] = curve
+    return table
+
+
+def resampled(run: NDArray[np.integer], replicates: int, rng: np.random.Generator) -> Array:
+    """How often each curve counts in each replicate: runs drawn again, and in each of them its curves.
+
+    Parameters
+    ----------
+    run : (n_curves,) int array
+        Run of each curve; with one run, its curves alone are drawn.
+    replicates : int
+    rng : numpy Generator
+
+    Returns
+    -------
+    (replicates, n_curves) array
+        One replicate sums to ``n_curves`` where all runs have equally many.
+    """
+    members = [np.flatnonzero(run == one) for one in np.unique(run)]
+    weights = np.zeros((replicates, run.size))
+    for row in weights:
+        for one in rng.integers(0, len(members), len(members)):
+            np.add.at(row, rng.choice(members[one], members[one].size), 1.0)
+    return weights
+
+
+def signed(error: Array, weights: Array | None = None) -> Array:
+    """Mean over curves, times and columns; (n_replicates,) with weights, else a scalar.
+
+    Parameters
+    ----------
+    error : (n_curves, n_times, n_columns) array
+        Model less DEM [1].
+    weights : (n_replicates, n_curves) array, optional
+        From `resampled`.
+    """
+    return _weighted(np.nansum(error, axis=(1, 2)), _counted(error), weights)
+
+
+def rms(error: Array, weights: Array | None = None) -> Array:
+    """Root of the mean square over curves, times and columns; arguments as `signed`."""
+    return np.sqrt(_weighted(np.nansum(error**2, axis=(1, 2)), _counted(error), weights))
+
+
+def mean_size(error: Array, weights: Array | None = None) -> Array:
+    """How large the mean over times and columns of one curve is, as a root mean square over the curves."""
+    counted = _counted(error)
+    means = np.divide(np.nansum(error, axis=(1, 2)), counted, out=np.zeros(len(error)), where=counted > 0)
+    return np.sqrt(_weighted(means**2, (counted > 0).astype(float), weights))
+
+
+def interval(
+    summary: Callable[[Array, Array | None], Array], error: Array, weights: Array
+) -> tuple[float, float]:
+    """95 % interval of a summary over starts and runs; NaN where fewer than two curves say anything.
+
+    Parameters
+    ----------
+    summary : callable
+        `signed`, `rms` or `mean_size`.
+    error : (n_curves, n_times, n_columns) array
+    weights : (n_replicates, n_curves) array
+        From `resampled`.
+
+    Returns
+    -------
+    low, high : float
+    """
+    if (_counted(error) > 0).sum() < 2:
+        return float("nan"), float("nan")
+    found = summary(error, weights)
+    low, high = band(found[np.isfinite(found)])
+    return float(low), float(high)
+
+
+def deviations(observed: Array, group: NDArray[np.integer]) -> Array:
+    """Distance of each curve of the DEM from the mean of its group, scaled so that its square is unbiased.
+
+    With repeated runs a group is what started at the same time in each of them; without, all starts.
+    What is left is the noise floor: a model that knew the mean of all possible runs would err by as much.
+    A single other run taken for a model would err sqrt(2) times as much.
+
+    Parameters
+    ----------
+    observed : (n_curves, n_times, n_columns) array
+        Curves of the DEM [1].
+    group : (n_curves,) int array
+        Curves that are compared with each other.
+
+    Returns
+    -------
+    array of the same shape
+        NaN where fewer than two curves of the group are left.
+    """
+    found = np.full(observed.shape, np.nan)
+    for one in np.unique(group):
+        members = group == one
+        curves = observed[members]
+        number = np.isfinite(curves).sum(axis=0)
+        mean = np.divide(
+            np.nansum(curves, axis=0), number, out=np.full(number.shape, np.nan), where=number > 1
+        )
+        found[members] = (curves - mean) * np.sqrt(number / np.maximum(number - 1, 1))
+    return found
+
+
+def distances(one: Array, two: Array) -> Array:
+    """Total variation of pairs of densities, NaN where one of them is missing.
+
+    Parameters
+    ----------
+    one, two : (n_curves, n_moments, n_cells) array
+        Shares [1].
+
+    Returns
+    -------
+    (n_curves, n_moments, 1) array
+        0 to 1 [1].
+    """
+    found = np.full((*one.shape[:2], 1), np.nan)
+    for where in np.ndindex(*one.shape[:2]):
+        if np.isfinite(one[where]).all() and np.isfinite(two[where]).all():
+            found[where] = total_variation(one[where], two[where])
+    return found
+
+
+def mean_of_others(densities: Array, group: NDArray[np.integer]) -> Array:
+    """Mean density of the other members of each curve's group, NaN where there is none.
+
+    Parameters
+    ----------
+    densities : (n_curves, n_moments, n_cells) array
+        Shares [1].
+    group : (n_curves,) int array
+
+    Returns
+    -------
+    array of the same shape
+    """
+    found = np.full(densities.shape, np.nan)
+    for one in range(len(densities)):
+        others = densities[(group == group[one]) & (np.arange(len(densities)) != one)]
+        number = np.isfinite(others).sum(axis=0)
+        found[one] = np.divide(
+            np.nansum(others, axis=0), number, out=np.full(number.shape, np.nan), where=number > 0
+        )
+    return found
+
+
+def fluctuation(curves: Array, half_width: int) -> Array:
+    """Curves less their own running mean: what bubbles do to them, without the mean decay.
+
+    Parameters
+    ----------
+    curves : (n_curves, n_times, n_columns) array
+    half_width : int
+        Times on each side of the running mean [1].
+
+    Returns
+    -------
+    (n_curves, n_times - 2 half_width, n_columns) array
+        Its `rms` is the size of the fluctuations; without times where the curves are too short.
+    """
+    width = 2 * half_width + 1
+    if curves.shape[1] < width:
+        return curves[:, :0]
+    windows = np.lib.stride_tricks.sliding_window_view(curves, width, axis=1)
+    return np.asarray(curves[:, half_width : curves.shape[1] - half_width] - windows.mean(axis=-1))
+
+
+def _counted(error: Array) -> Array:
+    return np.isfinite(error).sum(axis=(1, 2)).astype(float)
+
+
+def _weighted(total: Array, number: Array, weights: Array | None) -> Array:
+    if weights is None:
+        return np.asarray(total.sum() / number.sum() if number.sum() > 0 else np.nan)
+    counted = weights @ number
+    return np.divide(weights @ total, counted, out=np.full(len(weights), np.nan), where=counted > 0)

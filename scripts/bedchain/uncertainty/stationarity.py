@@ -1,0 +1,120 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Whether a bed is statistically stationary: the drift of what is seen of it, against its own block error."""
+
+from typing import NamedTuple
+
+import numpy as np
+import pandas as pd
+from numpy.typing import NDArray
+from scipy import stats
+
+from bedchain.uncertainty.bands import BLOCK_CORRELATIONS, FEWEST_BLOCKS, correlation_steps
+
+LEVEL = 0.95
+REPLICATES = 1000
+# of the intervals only: the same series gives the same interval
+SEED = 13
+
+
+class Drift(NamedTuple):
+    """Straight line through a series.
+
+    Attributes
+    ----------
+    mean : float
+        Of the series, in its unit.
+    change : float
+        Of the line from the first to the last time, in the same unit.
+    low, high : float
+        Ends of the interval of the change.
+    block : int
+        Steps in a block.
+    """
+
+    mean: float
+    change: float
+    low: float
+    high: float
+    block: int
+
+    @property
+    def stationary(self) -> bool:
+        """Whether the interval holds 0: the change is no more than what chance makes of a steady bed."""
+        return self.low <= 0 <= self.high
+
+
+def drift(series: NDArray[np.floating], level: float = LEVEL) -> Drift:
+    """Drift of an evenly spaced series, by least squares, with the interval of moving blocks.
+
+    What is left of the series beside the line is drawn again in blocks three correlation times long (Kuensch
+    1989), at most a fifth of the series, and gets a line of its own each time: the changes of these lines
+    are what chance alone makes.
+
+    Parameters
+    ----------
+    series : (n_times,) array
+        At least ten times.
+    level : float
+        Of the interval [1].
+
+    Returns
+    -------
+    Drift
+    """
+    values = np.asarray(series, float)
+    line = np.linspace(-0.5, 0.5, len(values))
+    weights = line / (line @ line)
+    change = float(weights @ values)
+    rest = values - values.mean() - change * line
+    block = int(min(BLOCK_CORRELATIONS * correlation_steps(rest), len(rest) // FEWEST_BLOCKS))
+    rng = np.random.default_rng(SEED)
+    n_blocks = -(-len(rest) // block)
+    first = rng.integers(0, len(rest) - block + 1, (REPLICATES, n_blocks))
+    drawn = (first[:, :, None] + np.arange(block)).reshape(REPLICATES, -1)[:, : len(rest)]
+    noise = rest[drawn] @ weights
+    # few blocks: two degrees of freedom went into the line, and their spread is itself uncertain (Student)
+    free = n_blocks - 2
+    noise *= np.sqrt(n_blocks / free) * stats.t.ppf((1 + level) / 2, free) / stats.norm.ppf((1 + level) / 2)
+    low, high = np.quantile(noise, [(1 - level) / 2, (1 + level) / 2])
+    return Drift(float(values.mean()), change, change - float(high), change - float(low), block)
+
+
+def drift_table(
+    series: dict[str, tuple[str, float, NDArray[np.floating]]],
+    profile: NDArray[np.float64],
+    heights_m: NDArray[np.float64],
+    interval_s: float,
+) -> pd.DataFrame:
+    """Drifts of all series and of the voidage in each row.
+
+    Parameters
+    ----------
+    series : dict of str to (unit, interval [s], values)
+        By quantity.
+    profile : (n_frames, n_rows) array
+        Voidage [1]; rows that never hold a particle are left out. So that all rows together raise a false
+        alarm in one of twenty steady beds, each has a level of 0.05 / n_rows.
+    heights_m : (n_rows,) array
+        Middles of the rows [m].
+    interval_s : float
+        Between the frames of the profile [s].
+
+    Returns
+    -------
+    DataFrame
+        quantity, height_m (rows of the profile only), mean, drift, ci_low, ci_high, unit, block_s,
+        stationary_1 (1 or 0).
+    """
+    rows = [_row(name, np.nan, drift(values), unit, step) for name, (unit, step, values) in series.items()]
+    held = np.flatnonzero(profile.min(axis=0) < 1)
+    level = 1 - (1 - LEVEL) / max(len(held), 1)
+    rows += [_row("voidage", heights_m[row], drift(profile[:, row], level), "1", interval_s) for row in held]
+    return pd.DataFrame(rows)
+
+
+def _row(quantity: str, height_m: float, found: Drift, unit: str, step_s: float) -> dict[str, object]:
+    return {
+        "quantity": quantity, "height_m": height_m, "mean": found.mean, "drift": found.change,
+        "ci_low": found.low, "ci_high": found.high, "unit": unit, "block_s": found.block * step_s,
+        "stationary_1": int(found.stationary),
+    }  # fmt: skip

@@ -1,0 +1,219 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+# The chains: cells, transition matrices, runs, their comparison with the DEM, and tables.
+
+
+rule assign_cells:
+    input:
+        code("assign_cells"),
+        **TRAJECTORY,
+    output:
+        cells=f"{RESULTS}/cells.npz",
+    log:
+        f"{LOGS}/assign_cells.log",
+    benchmark:
+        f"{BENCHMARKS}/assign_cells.tsv"
+    conda:
+        "../envs/python.yaml"
+    params:
+        **pick(CASE, "cells", "particles.diameter_m"),
+    script:
+        "assign_cells.py"
+
+
+rule build_transitions:
+    input:
+        code("build_transitions"),
+        **TRAJECTORY,
+        cells=rules.assign_cells.output.cells,
+    output:
+        transitions=f"{RESULTS}/transitions_{{model}}.npz",
+    log:
+        f"{LOGS}/build_transitions_{{model}}.log",
+    benchmark:
+        f"{BENCHMARKS}/build_transitions_{{model}}.tsv"
+    conda:
+        "../envs/python.yaml"
+    params:
+        **pick(CASE, "learning", "chain.lag_s", "chain.estimator"),
+        options=lambda wildcards: OPTIONS[wildcards.model],
+    script:
+        "build_transitions.py"
+
+
+rule run_chain:
+    input:
+        code("run_chain"),
+        **TRAJECTORY,
+        cells=rules.assign_cells.output.cells,
+        transitions=rules.build_transitions.output.transitions,
+    output:
+        chain=f"{RESULTS}/chain_{{model}}.npz",
+    log:
+        f"{LOGS}/run_chain_{{model}}.log",
+    benchmark:
+        f"{BENCHMARKS}/run_chain_{{model}}.tsv"
+    conda:
+        "../envs/python.yaml"
+    params:
+        **pick(CASE, "comparison.start_s", "comparison.end_s", "mixing", "chain.estimator", "chain.seed"),
+        **pick(CASE, "figures.batch_height_m", "figures.moments_s"),
+        options=lambda wildcards: OPTIONS[wildcards.model],
+        learning=CASE["learning"],
+    script:
+        "run_chain.py"
+
+
+rule compare_mixing:
+    input:
+        code("compare_mixing"),
+        **TRAJECTORY,
+        cells=rules.assign_cells.output.cells,
+        chains=expand(rules.run_chain.output.chain, model=MODELS),
+        bed_series=RUN["bed_series"],
+        repeats=expand(f"{BED}/repeats/{{repeat}}/mixing.csv", repeat=REPEATS),
+    output:
+        mixing=f"{RESULTS}/mixing.csv",
+        metrics=f"{RESULTS}/metrics.csv",
+    log:
+        f"{LOGS}/compare_mixing.log",
+    benchmark:
+        f"{BENCHMARKS}/compare_mixing.tsv"
+    conda:
+        "../envs/python.yaml"
+    params:
+        **pick(CASE, "comparison.start_s", "comparison.end_s", "mixing", "chain.models"),
+        **pick(CASE, "figures.batch_height_m"),
+        bed_start_s=CASE["learning"]["start_s"],
+        bed_end_s=CASE["comparison"]["end_s"],
+        weight_Pa=weight_per_area(CASE),
+    script:
+        "compare_mixing.py"
+
+
+rule discuss_errors:
+    input:
+        code("discuss_errors"),
+        **TRAJECTORY,
+        mixing=rules.compare_mixing.output.mixing,
+    output:
+        discussion=f"{RESULTS}/discussion.csv",
+    log:
+        f"{LOGS}/discuss_errors.log",
+    benchmark:
+        f"{BENCHMARKS}/discuss_errors.tsv"
+    priority: 1  # long: the short ones fit beside its end
+    conda:
+        "../envs/python.yaml"
+    params:
+        **pick(CASE, "cells", "mixing", "discussion", "chain.lag_s", "chain.estimator"),
+        learning=CASE["learning"],
+        comparison=pick(CASE, "comparison.start_s", "comparison.end_s"),
+        names=[model for model in MODEL_FIGURES if model in MODELS],
+    script:
+        "discuss_errors.py"
+
+
+rule diagnose_chains:
+    input:
+        code("diagnose_chains"),
+        **TRAJECTORY,
+        cells=rules.assign_cells.output.cells,
+        transitions=expand(rules.build_transitions.output.transitions, model=MODELS),
+    output:
+        diagnostics=f"{RESULTS}/diagnostics.csv",
+    log:
+        f"{LOGS}/diagnose_chains.log",
+    benchmark:
+        f"{BENCHMARKS}/diagnose_chains.tsv"
+    priority: 1  # long: the short ones fit beside its end
+    conda:
+        "../envs/python.yaml"
+    params:
+        **pick(CASE, "mixing", "chain.models", "chain.estimator", "chain.seed"),
+        options=OPTIONS,
+        learning=CASE["learning"],
+        comparison=pick(CASE, "comparison.start_s", "comparison.end_s"),
+    script:
+        "diagnose_chains.py"
+
+
+# Alone on the machine, since it measures times.
+rule time_models:
+    input:
+        code("time_models"),
+        **TRAJECTORY,
+        dem=RUN["dem"],
+        cells=rules.assign_cells.output.cells,
+        transitions=expand(rules.build_transitions.output.transitions, model=MODELS),
+    output:
+        timing=f"{RESULTS}/timing.csv",
+    log:
+        f"{LOGS}/time_models.log",
+    conda:
+        "../envs/python.yaml"
+    threads: workflow.cores or 1
+    params:
+        **pick(CASE, "mixing", "chain.models", "chain.estimator", "chain.seed"),
+        options=OPTIONS,
+        learning=CASE["learning"],
+        comparison=pick(CASE, "comparison.start_s", "comparison.end_s"),
+    script:
+        "time_models.py"
+
+
+rule write_table:
+    input:
+        code("write_table"),
+        schema="cases/case.schema.yaml",
+    output:
+        table=f"{RESULTS}/table1.csv",
+        png=f"{FIGURES}/table1.png",
+        pdf=f"{FIGURES}/table1.pdf",
+    log:
+        f"{LOGS}/write_table.log",
+    conda:
+        "../envs/python.yaml"
+    params:
+        **pick(CASE, "figures.resolution_dpi"),
+        values=table_values(CASE),
+    script:
+        "write_table.py"
+
+
+# Where a case stands for a publication: its claims, one by one.
+rule write_agreement:
+    input:
+        code("write_agreement"),
+        claims=f"cases/{NAME}/claims.csv",
+        metrics=rules.compare_mixing.output.metrics,
+        mixing=rules.compare_mixing.output.mixing,
+        timing=rules.time_models.output.timing,
+    output:
+        agreement=f"{RESULTS}/agreement.csv",
+    log:
+        f"{LOGS}/write_agreement.log",
+    conda:
+        "../envs/python.yaml"
+    params:
+        **pick(CASE, "chain.models"),
+    script:
+        "write_agreement.py"
+
+
+rule write_provenance:
+    input:
+        code("write_provenance"),
+        dem=RUN["dem"],
+        metrics=rules.compare_mixing.output.metrics,
+        timing=rules.time_models.output.timing,
+    output:
+        provenance=f"{RESULTS}/provenance.json",
+    log:
+        f"{LOGS}/write_provenance.log",
+    conda:
+        "../envs/python.yaml"
+    params:
+        case={section: value for section, value in CASE.items() if section != "figures"},
+        benchmarks=BENCHMARKS,
+    script:
+        "write_provenance.py"

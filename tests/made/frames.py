@@ -1,0 +1,78 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Frames of made-up particles, shared by the tests of the chains."""
+
+import numpy as np
+
+from bedchain.trajectory.frames import Frames
+from bedchain.trajectory.grid import Grid
+
+
+def framed(cells: np.ndarray, grid: Grid) -> Frames:
+    """Frames of particles in the middles of their cells."""
+    x, z = np.moveaxis(grid.centres_m[cells], -1, 0)
+    return Frames(np.arange(len(cells)) * 0.025, x, z, cells.astype(np.int32))
+
+
+def stirred(seed: int = 0, n_frames: int = 60, n_particles: int = 400) -> tuple[Frames, Grid]:
+    """Particles with a memory of their direction on a small bed."""
+    rng = np.random.default_rng(seed)
+    grid = Grid(0.05, 0.08, 5, 8)
+    x, z = rng.random((2, n_particles)) * [[0.05], [0.08]]
+    vx, vz = rng.normal(0, 0.004, (2, n_particles))
+    frames = []
+    for _ in range(n_frames):
+        frames.append((x, z))
+        vx, vz = 0.8 * vx + rng.normal(0, 0.003, n_particles), 0.8 * vz + rng.normal(0, 0.003, n_particles)
+        x, z = np.clip(x + vx, 0, 0.05), np.clip(z + vz, 0, 0.08)
+    x, z = np.moveaxis(np.array(frames), 1, 0)
+    return Frames(np.arange(n_frames) * 0.025, x, z, grid.cell_of(x, z)), grid
+
+
+def kept_velocity(
+    n_particles: int, n_frames: int, width_m: float, memory_s: float, speed_m_s: float, seed: int
+) -> Frames:
+    """Particles in a square box whose velocity forgets itself exponentially (Ornstein and Uhlenbeck 1930).
+
+    Walls turn them back. Position and velocity are exact at the frames, 0.025 s apart.
+    """
+    rng, axes = np.random.default_rng(seed), []
+    keep = np.exp(-0.025 / memory_s)
+    # A step's change of velocity and displacement are two correlated normal numbers.
+    a, b = 0.025 / memory_s, 1 - keep
+    both = np.array(
+        [[1 - keep**2, memory_s * b**2], [memory_s * b**2, memory_s**2 * (2 * a - 4 * b + 1 - keep**2)]]
+    )
+    root = np.linalg.cholesky(both) * speed_m_s
+    for _ in range(2):
+        v, x = rng.normal(0, speed_m_s, n_particles), rng.uniform(0, width_m, n_particles)
+        frames = np.empty((2, n_frames, n_particles))
+        for frame in range(n_frames):
+            frames[:, frame] = x, v
+            kick = root @ rng.normal(size=(2, n_particles))
+            x, v = x + memory_s * b * v + kick[1], keep * v + kick[0]
+        turn = np.mod(frames[0], 2 * width_m)
+        back = turn > width_m
+        axes.append((np.where(back, 2 * width_m - turn, turn), np.where(back, -frames[1], frames[1])))
+    (x, vx), (z, vz) = axes
+    return Frames(np.arange(n_frames) * 0.025, x, z, np.zeros(x.shape, np.int32), vx, vz)
+
+
+def on_grid(frames: Frames, grid: Grid) -> Frames:
+    """The same frames with cells of another grid."""
+    cells = grid.cell_of(frames.x_m, frames.z_m)
+    return Frames(frames.times_s, frames.x_m, frames.z_m, cells, frames.vx_m_s, frames.vz_m_s)
+
+
+def squared_displacement(t_s: np.ndarray, memory_s: float, speed_m_s: float) -> np.ndarray:
+    """Mean square along an axis of `kept_velocity` without walls [m2]."""
+    return 2 * (speed_m_s * memory_s) ** 2 * (t_s / memory_s - 1 + np.exp(-t_s / memory_s))
+
+
+def half_remaining(square_m2: np.ndarray, width_m: float) -> np.ndarray:
+    """Share of one half's particles in that half, after displacements of a mean square folded at the walls.
+
+    Cosines of odd order are what tells the halves apart, and a normal displacement damps each.
+    """
+    odd = np.arange(1, 400, 2)
+    damped = np.exp(-np.multiply.outer(square_m2, (np.pi * odd / width_m) ** 2) / 2)
+    return 0.5 + (4 / (np.pi * odd) ** 2 * damped).sum(axis=-1)

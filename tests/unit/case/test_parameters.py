@@ -1,0 +1,147 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""The numbers that both solvers get, and the disk that they need."""
+
+import copy
+import re
+import subprocess
+import sys
+
+import pytest
+
+from bedchain.case.load import load_case
+from bedchain.case.parameters import liggghts_text, openfoam_text, solver_parameters
+from bedchain.case.schema import load_schema
+from bedchain.dem.disk import require_disk, run_bytes
+from bedchain.errors import UserError
+from made import ROOT
+
+
+@pytest.fixture(scope="module")
+def paper():
+    return load_case(ROOT / "cases" / "paper" / "case.yaml")
+
+
+@pytest.fixture(scope="module")
+def values(paper):
+    return {parameter.name: parameter.value for parameter in solver_parameters(paper, load_schema())}
+
+
+def test_the_paper_s_numbers_arrive(values):
+    assert (values["width"], values["height"], values["number"]) == (0.27, 1.05, 81000)
+    assert (values["diameter"], values["radius"], values["density"]) == (1e-3, 5e-4, 2600)
+    assert values["drag_law"] == "gidaspow"
+    assert values["dump_suffix"] == "bin"
+
+
+def test_steps_and_cells_are_derived_as_whole_numbers(values):
+    derived = {
+        "gas_cells_x": 54,
+        "gas_cells_y": 1,
+        "gas_cells_z": 210,
+        "coupling_steps": 16,
+        "frame_steps": 800,
+        "settle_steps": 16000,
+    }
+    for name, value in derived.items():
+        assert values[name] == value and isinstance(values[name], int), name
+
+
+def test_one_layer_has_no_walls_across_and_gas_in_two_dimensions(values):
+    assert (values["depth_walls"], values["gas_cells_y"], values["faces_type"]) == (0, 1, "empty")
+
+
+def test_many_layers_have_walls_and_whole_gas_cells_across():
+    case = load_case(ROOT / "cases" / "mueller" / "case.yaml")
+
+    def given():
+        found = {parameter.name: parameter.value for parameter in solver_parameters(case, load_schema())}
+        return [found[name] for name in ("depth_walls", "slab_high", "gas_cells_y", "faces_type")]
+
+    assert given() == [1, 0.005, 4, "wall"]
+    case["gas"]["cell_size_m"] = 0.011
+    assert given() == [1, 0.005, 1, "empty"]
+
+
+def test_rolling_resistance_is_on_where_it_has_a_coefficient(values, paper):
+    assert (values["contact_law"], values["rolling_law"], values["rolling_friction"]) == ("hertz", "off", 0)
+    paper["contact"]["rolling_friction_1"] = 0.01
+    found = {parameter.name: parameter.value for parameter in solver_parameters(paper, load_schema())}
+    assert (found["rolling_law"], found["rolling_friction"]) == ("epsd2", 0.01)
+
+
+def test_many_layers_take_more_disk():
+    case = load_case(ROOT / "cases" / "mueller" / "case.yaml")
+    thin = case | {"bed": case["bed"] | {"layers": "one"}}
+    columns = 2 * 8 * 9240 * 401  # y and vy of each particle and frame
+    assert run_bytes(case) - run_bytes(thin) > columns
+
+
+def test_lengths_of_time_that_may_grow_are_not_given_to_the_decks(values):
+    assert not {"end", "end_time", "segment", "ranks"} & set(values)
+
+
+def test_both_files_hold_the_same_numbers(paper):
+    parameters = solver_parameters(paper, load_schema())
+    decks = re.findall(r"^variable (\w+) (?:equal|string) (\S+)  # \[.+\] ", liggghts_text(parameters), re.M)
+    dictionary = re.findall(r"^(\w+) (\S+); // \[.+\] ", openfoam_text(parameters), re.M)
+    assert decks == dictionary == [(item.name, str(item.value)) for item in parameters]
+    assert len({name for name, _ in decks}) == len(decks)
+
+
+@pytest.mark.parametrize(
+    ("section", "key", "value"),
+    [
+        ("figures", "dem_colour", "red"),
+        ("cells", "columns", 54),
+        ("time", "end_s", 30.0),
+        ("learning", "start_s", 11.0),
+        ("run", "ranks", 1),
+    ],
+)
+def test_what_the_solvers_do_not_need_changes_nothing(paper, section, key, value):
+    other = copy.deepcopy(paper)
+    assert other[section][key] != value
+    other[section][key] = value
+    assert solver_parameters(other, load_schema()) == solver_parameters(paper, load_schema())
+
+
+def test_the_command_writes_both_files_and_leaves_equal_ones_alone(tmp_path):
+    command = [
+        sys.executable,
+        "scripts/write_parameters.py",
+        "cases/short/case.yaml",
+        str(tmp_path / "short"),
+    ]
+    subprocess.run(command, cwd=ROOT, check=True)
+    files = [tmp_path / "short" / name for name in ("parameters.lig", "caseParameters")]
+    before = [file.stat().st_mtime_ns for file in files]
+    assert "variable diameter equal 0.001  # [m] particles.diameter_m\n" in files[0].read_text(
+        encoding="utf-8"
+    )
+    assert "diameter 0.001; // [m] particles.diameter_m\n" in files[1].read_text(encoding="utf-8")
+    subprocess.run(command, cwd=ROOT, check=True)
+    assert [file.stat().st_mtime_ns for file in files] == before
+
+
+def test_the_command_refuses_a_bad_case_without_a_trace(tmp_path):
+    bad = tmp_path / "case.yaml"
+    text = (ROOT / "cases" / "short" / "case.yaml").read_text(encoding="utf-8")
+    bad.write_text(re.sub(r"^seed: .*", "seed: 4", text, flags=re.M), encoding="utf-8")
+    command = [sys.executable, "scripts/write_parameters.py", str(bad), str(tmp_path / "out")]
+    done = subprocess.run(command, cwd=ROOT, capture_output=True, text=True, check=False)
+    assert done.returncode == 1
+    assert "seed: 4 is not above 10000" in done.stderr and "Traceback" not in done.stderr
+    assert not (tmp_path / "out").exists()
+
+
+def test_the_paper_s_run_needs_gigabytes_and_the_short_one_megabytes(paper):
+    frames, number = 801, 81000
+    positions = frames * number * (5 * 8 + 4 * 4 + 4)
+    assert positions < run_bytes(paper) < 2 * positions
+    assert run_bytes(load_case(ROOT / "cases" / "short" / "case.yaml")) < 500e6
+
+
+def test_a_full_disk_is_refused_with_space_needed_and_free(tmp_path):
+    require_disk(tmp_path, 1)
+    with pytest.raises(UserError, match=r"needs 1000000000000 MB on disk, \d+ MB are free; free some space"):
+        require_disk(tmp_path, 10**18)

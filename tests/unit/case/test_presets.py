@@ -1,0 +1,122 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Presets of the chains: read, refused, and brought onto beds whose cells and windows do not fit them."""
+
+import copy
+
+import pytest
+import yaml
+
+from bedchain.case.load import load_case
+from bedchain.case.presets import Preset, preset_named, read_presets, with_preset
+from bedchain.errors import CaseError, UserError
+from bedchain.workflow import case_or_exit
+from made import ROOT
+
+FAST = {"cell_m": 0.02, "lag_s": 0.2, "model": "static", "cost_s": 0.01, "error_floors": 2.5}
+FINE = {"cell_m": 0.01, "lag_s": 0.025, "model": "dynamic", "measured_on": "a bed of this test"}
+
+
+@pytest.fixture
+def presets(tmp_path):
+    file = tmp_path / "presets.yaml"
+    file.write_text(yaml.safe_dump({"fast": FAST, "accurate": FINE}, sort_keys=False))
+    return file
+
+
+@pytest.fixture(scope="module")
+def short():
+    return load_case(ROOT / "cases" / "short" / "case.yaml")
+
+
+@pytest.fixture(scope="module")
+def paper():
+    return load_case(ROOT / "cases" / "paper" / "case.yaml")
+
+
+def preset(cell_m=0.02, lag_s=0.2, model="static"):
+    return Preset("tried", cell_m, lag_s, model)
+
+
+def test_presets_are_read_with_what_was_measured(presets):
+    fast, accurate = read_presets(presets).values()
+    assert fast == Preset("fast", 0.02, 0.2, "static", 0.01, 2.5)
+    assert accurate.error_floors != accurate.error_floors and accurate.measured_on == "a bed of this test"
+
+
+def test_an_unknown_preset_is_told_the_known_ones(presets):
+    with pytest.raises(UserError, match="no fidelity 'fats' in .*: take one of fast, accurate"):
+        preset_named("fats", presets)
+
+
+def test_without_presets_the_study_that_makes_them_is_named(tmp_path):
+    assert read_presets(tmp_path / "none.yaml") == {}
+    with pytest.raises(UserError, match=r"none\.yaml holds no presets; snakemake tradeoff"):
+        preset_named("fast", tmp_path / "none.yaml")
+
+
+@pytest.mark.parametrize(
+    ("key", "value", "said"),
+    [
+        ("cell_m", None, "cell_m is None, not a number above 0"),
+        ("cell_m", "1 cm", "cell_m is '1 cm', not a number above 0"),
+        ("lag_s", -0.2, "lag_s is -0.2, not a number above 0"),
+        ("lag_s", True, "lag_s is True, not a number above 0"),
+        ("model", "statics", "model is 'statics', not one of static, dynamic"),
+    ],
+)
+def test_a_setting_that_cannot_be_is_named(tmp_path, key, value, said):
+    file = tmp_path / "presets.yaml"
+    file.write_text(yaml.safe_dump({"fast": FAST | {key: value}}))
+    with pytest.raises(UserError, match=said):
+        read_presets(file)
+
+
+def test_what_is_no_table_of_presets_is_refused(tmp_path):
+    file = tmp_path / "presets.yaml"
+    for text, said in (("- fast", "holds no presets"), ("fast: 3", "fast: 3 is no preset")):
+        file.write_text(text)
+        with pytest.raises(UserError, match=said):
+            read_presets(file)
+
+
+def test_a_preset_changes_cells_lag_model_and_moments_only(short):
+    before = copy.deepcopy(short)
+    changed = with_preset(short, preset())
+    assert short == before
+    # 5 columns would have the middle line within a cell, where the case has it on a border
+    assert changed["cells"] == {"columns": 4, "rows": 20}
+    assert changed["chain"]["lag_s"] == 0.2 and changed["chain"]["models"] == ["static"]
+    assert changed["figures"]["moments_s"] == [0.2, 0.6, 0.8, 1.0, 1.2]
+    for section in set(short) - {"cells", "chain", "figures"}:
+        assert changed[section] == short[section]
+
+
+def test_cells_divide_the_levels_of_an_archive_and_keep_lines_on_borders(paper):
+    # levels of 0.5 mm; 0.25 m is a border of the case's rows, 0.135 m of none of its columns
+    assert with_preset(paper, preset(0.01))["cells"] == {"columns": 27, "rows": 105}
+    assert with_preset(paper, preset(0.02))["cells"] == {"columns": 15, "rows": 42}
+    assert with_preset(paper, preset(0.0025))["cells"] == {"columns": 108, "rows": 420}
+    assert with_preset(paper, preset(0.05))["cells"] == {"columns": 5, "rows": 21}
+
+
+def test_the_lag_divides_both_windows(paper, short):
+    assert with_preset(paper, preset(lag_s=0.3))["chain"]["lag_s"] == 0.25
+    assert with_preset(short, preset(lag_s=0.3))["chain"]["lag_s"] == pytest.approx(0.25)
+    assert with_preset(short, preset(lag_s=1e-3))["chain"]["lag_s"] == 0.025
+
+
+def test_a_preset_too_coarse_for_the_windows_is_refused_by_name(short):
+    with pytest.raises(CaseError, match="tried on short bed.*\n.*chain.lag_s"):
+        with_preset(short, preset(lag_s=2.0))
+
+
+def test_a_case_selects_by_one_key_and_the_command_line_goes_first(presets, tmp_path, monkeypatch):
+    (tmp_path / "cases" / "own").mkdir(parents=True)
+    text = (ROOT / "cases" / "short" / "case.yaml").read_text()
+    (tmp_path / "cases" / "own" / "case.yaml").write_text(text + "\nfidelity: fast\n")
+    presets.rename(tmp_path / "cases" / "presets.yaml")
+    monkeypatch.chdir(tmp_path)
+    assert case_or_exit("own")["chain"]["models"] == ["static"]
+    assert case_or_exit("own", "accurate")["chain"]["models"] == ["dynamic"]
+    with pytest.raises(SystemExit):
+        case_or_exit("own", "best")
