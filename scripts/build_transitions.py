@@ -6,8 +6,8 @@ from typing import Any
 
 from bedchain.chains import registry
 from bedchain.stage import LOG, stage
-from bedchain.trajectory.cell_store import open_cells, window_frames
 from bedchain.trajectory.frames import lag_frames
+from bedchain.trajectory.realisations import open_realisation
 
 
 def build_transitions(
@@ -39,10 +39,10 @@ def build_transitions(
     DataError
         An empty window, a lag that is no multiple of the frame interval; nothing is written then.
     """
-    store = open_cells(cells)
-    frames = window_frames(trajectory, metadata, store, start_s, end_s)
+    bed = open_realisation("the run", trajectory, metadata, cells)
+    frames = bed.window(start_s, end_s)
     lag = lag_frames(lag_s, frames.interval_s)
-    chain = registry.learn(model, frames, store.grid, lag, estimator, **(options or {}))
+    chain = registry.learn(model, frames, bed.grid, lag, estimator, **(options or {}))
     registry.save(chain, transitions)
     for name, value in chain.report.items():
         LOG.info("%s chain, %s: %.6g", model, name, value)

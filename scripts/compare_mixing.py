@@ -24,8 +24,8 @@ from bedchain.files import read_arrays, write_csv
 from bedchain.measures.batch import observed_shares
 from bedchain.measures.mixing import remaining_from_positions, sides
 from bedchain.stage import LOG, stage
-from bedchain.trajectory.cell_store import open_cells, window_frames
 from bedchain.trajectory.frames import lag_frames
+from bedchain.trajectory.realisations import open_realisation
 
 
 def compare_mixing(
@@ -59,8 +59,8 @@ def compare_mixing(
     repeats : sequence of Path
         ``mixing.csv`` of each repeat of the DEM, in order of their numbers.
     """
-    store = open_cells(cells)
-    frames = window_frames(trajectory, metadata, store, start_s, end_s)
+    bed = open_realisation("the run", trajectory, metadata, cells)
+    frames = bed.window(start_s, end_s)
     dem = remaining_from_positions(frames.x_m, frames.z_m, split_x_m, split_z_m)
     places = zip(frames.x_m, frames.z_m, strict=True)
     on_side = np.array([sides(x, z, split_x_m, split_z_m).mean(axis=1) for x, z in places])
@@ -75,7 +75,7 @@ def compare_mixing(
         rows += floor_metrics(realisations)
     for model, path in chains.items():
         chain = read_arrays(path)
-        observed = observed_shares(store, chain["moments_s"], start_s, batch_height_m)
+        observed = observed_shares(bed.stored, chain["moments_s"], start_s, batch_height_m)
         lag = lag_frames(float(chain["lag_s"]), frames.interval_s)
         if len(chain["times_s"]) != len(dem[::lag]):
             raise UserError(f"{path} covers another window than {start_s:g} to {end_s:g} s: delete it")

@@ -29,9 +29,9 @@ from bedchain.files import write_csv
 from bedchain.measures.batch import total_variation
 from bedchain.measures.mixing import marked_histogram, sides
 from bedchain.stage import LOG, stage
-from bedchain.trajectory.cell_store import frames_up_to, open_cells, window_frames
 from bedchain.trajectory.frames import Frames, lag_frames
 from bedchain.trajectory.grid import Grid
+from bedchain.trajectory.realisations import open_realisation
 from bedchain.uncertainty.bands import block_length
 
 # the top of the bed, for passages from its bottom: reached by this share of the particles at a time
@@ -76,30 +76,30 @@ def diagnose_chains(
     options : dict of str to dict, optional
         Settings of each model only.
     """
-    store = open_cells(cells)
+    bed = open_realisation("the run", trajectory, metadata, cells)
     chains = {name: registry.load(path) for name, path in transitions.items()}
     with_matrix = {name: chain for name, chain in chains.items() if isinstance(chain, MarkovChain)}
     if absent := [name for name in chains if name not in with_matrix]:
         LOG.info("no transition matrix, so no timescales and no consistency: %s", ", ".join(absent))
-    frames = window_frames(trajectory, metadata, store, learning["start_s"], learning["end_s"])
+    frames = bed.window(learning["start_s"], learning["end_s"])
     lag = lag_frames(next(iter(chains.values())).lag_s, frames.interval_s)
     lags = doubled_lags(lag, len(frames.times_s))
     longest = max(lags[-1], int(FOLLOWED_SHARE * len(frames.times_s)) // lag * lag)
     looks = count_sides(frames, split_x_m, split_z_m, range(lag, longest + 1, lag))
     block = block_length(frames, split_x_m, lag)
     random = iter(np.random.default_rng(seed).spawn(1 + 3 * len(chains)))
-    density = visited_density(count_moves(frames.cells, store.grid.n_cells, lag))
-    top = top_row(density, store.grid, TOP_SHARE)
+    density = visited_density(count_moves(frames.cells, bed.grid.n_cells, lag))
+    top = top_row(density, bed.grid, TOP_SHARE)
 
-    rows = estimator_rows(frames, store.grid, lag, list(chains))
+    rows = estimator_rows(frames, bed.grid, lag, list(chains))
     rows += counted_rows(looks, frames, block, next(random))
     for name in with_matrix:
         own = (options or {}).get(name, {})
-        rows += check_model(name, frames, store.grid, looks, lags, estimator, block, next(random), own)
-    rows += path_rows("dem", frames, store.grid, top, lags)
-    known = in_cells(frames.times_s, frames.cells, store.grid)
-    rows += dispersion_rows("dem_cells", known, store.grid, lags[::DISPERSION_STRIDE])
-    before = frames_up_to(trajectory, metadata, store, learning["start_s"], lag)
+        rows += check_model(name, frames, bed.grid, looks, lags, estimator, block, next(random), own)
+    rows += path_rows("dem", frames, bed.grid, top, lags)
+    known = in_cells(frames.times_s, frames.cells, bed.grid)
+    rows += dispersion_rows("dem_cells", known, bed.grid, lags[::DISPERSION_STRIDE])
+    before = bed.up_to(learning["start_s"], lag)
     for name, chain in chains.items():
         if name not in PAPER_MODELS:
             distance = total_variation(chain.long_run_density(before), density)
@@ -112,9 +112,9 @@ def diagnose_chains(
         times = frames.times_s[::lag]
         paths = np.array([now.copy() for now in chain.paths(before, len(times) - 1, next(random))])
         steps = [one // lag for one in lags]
-        rows += path_rows(name, in_cells(times, paths, store.grid), store.grid, top, steps)
-    start = frames_up_to(trajectory, metadata, store, comparison["start_s"], lag)
-    window = window_frames(trajectory, metadata, store, comparison["start_s"], comparison["end_s"])
+        rows += path_rows(name, in_cells(times, paths, bed.grid), bed.grid, top, steps)
+    start = bed.up_to(comparison["start_s"], lag)
+    window = bed.window(comparison["start_s"], comparison["end_s"])
     rows += index_rows(chains, start, window, (split_x_m, split_z_m), lag, random)
     write_csv(table(rows), diagnostics)
     for one in rows:

@@ -1,6 +1,9 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Errors of the chains by cell size and lag, with theory and noise: results/<case>/discussion.csv."""
 
+from functools import lru_cache
+from itertools import chain as joined
+from itertools import product
 from pathlib import Path
 from typing import Any
 
@@ -12,15 +15,14 @@ from bedchain.comparison.curves import curve_errors, curves_of
 from bedchain.files import write_csv
 from bedchain.measures.mixing import GROUPS
 from bedchain.measures.numerical_dispersion import spreading
-from bedchain.stage import LOG, stage
+from bedchain.stage import stage
+from bedchain.studies.scan import scan
 from bedchain.trajectory.frames import Frames, lag_frames, window
 from bedchain.trajectory.grid import Grid
-from bedchain.trajectory.store import open_trajectory
+from bedchain.trajectory.realisations import open_realisation
 from bedchain.uncertainty.noise_floor import noise_floor
 
 AXES = ("x", "z")
-# the steps that a chain has to know of what came before: the dynamic one asks for one
-HISTORY_LAGS = 1
 ROUND_OFF = 1e-6
 Row = dict[str, Any]
 
@@ -59,45 +61,44 @@ def discuss_errors(
         Sizes of cells [m], rounded so that they divide the bed, and lags [s]; a lag that is no
         multiple of the frame interval, or does not divide both windows, is left out.
     """
-    store, described = open_trajectory(trajectory, metadata)
-    times_s, interval_s = np.array(described["times_s"]), described["frame_interval_s"]
-    learned, compared = (window(times_s, part["start_s"], part["end_s"]) for part in (learning, comparison))
-    size = described["width_m"], described["height_m"]
-    own_grid, own_lag = Grid(*size, columns, rows), lag_frames(lag_s, interval_s)
+    bed = open_realisation("the run", trajectory, metadata)
+    learned, compared = (
+        window(bed.times_s, part["start_s"], part["end_s"]) for part in (learning, comparison)
+    )
+    size, own_lag = (bed.width_m, bed.height_m), lag_frames(lag_s, bed.interval_s)
+    own_grid = Grid(*size, columns, rows)
     grids = [Grid(*size, *(max(1, round(length / cell)) for length in size)) for cell in cell_sizes_m]
-    lags = [round(lag / interval_s) for lag in lags_s if is_whole(lag / interval_s)]
+    lags = [round(lag / bed.interval_s) for lag in lags_s if is_whole(lag / bed.interval_s)]
     lengths = [part.stop - part.start - 1 for part in (learned, compared)]
     lags = [lag for lag in lags if not any(length % lag for length in lengths)]
     curves = realisations(pd.read_csv(mixing), lengths[1] + 1)
-    found = floor_rows(curves)
-    history = HISTORY_LAGS * max(own_lag, *lags)
-    before = slice(max(0, compared.start - history), compared.start + 1)
-    for grid in dict.fromkeys([own_grid, *grids]):
-        known, start = (in_cells(store, times_s, grid, part) for part in (learned, before))
-        for lag in dict.fromkeys([own_lag, *lags]):
-            found += spreading_rows(known, grid, lag)
-            steps = lengths[1] // lag
-            for name in names:
-                coarser = grid.n_cells <= own_grid.n_cells
-                if name == names[0] or own_grid == grid or (own_lag == lag and coarser):
-                    chain = registry.learn(name, known, grid, lag, estimator)
-                    remaining = chain.mixing(start, split_x_m, split_z_m, steps)
-                    found += error_rows(name, grid, chain.lag_s, remaining, curves.mean(axis=0)[::lag])
-        LOG.info("%d x %d cells of %.3g m", grid.columns, grid.rows, cell_size(grid))
-    write_csv(pd.DataFrame(found), discussion)
+    mean, in_memory = curves.mean(axis=0), lru_cache(maxsize=1)(lambda grid: bed.frames(grid, learned))
+
+    def measured(setting: tuple[Grid, int]) -> list[Row]:
+        grid, lag = setting
+        known, start = in_memory(grid), bed.leading_to(grid, compared.start, lag)
+        found = spreading_rows(known, grid, lag)
+        for name in names:
+            coarser = grid.n_cells <= own_grid.n_cells
+            if name == names[0] or own_grid == grid or (own_lag == lag and coarser):
+                chain = registry.learn(name, known, grid, lag, estimator)
+                remaining = chain.mixing(start, split_x_m, split_z_m, lengths[1] // lag)
+                found += error_rows(name, grid, chain.lag_s, remaining, mean[::lag])
+        return found
+
+    settings = list(product(dict.fromkeys([own_grid, *grids]), dict.fromkeys([own_lag, *lags])))
+    found = scan(
+        settings,
+        measured,
+        lambda setting: f"{setting[0].columns} x {setting[0].rows} cells, lag {setting[1]}",
+        lambda rows: f"{len(rows)} numbers",
+    )
+    write_csv(pd.DataFrame([*floor_rows(curves), *joined.from_iterable(found)]), discussion)
 
 
 def is_whole(number: float) -> bool:
     """Whether a ratio is a whole number up to round-off, at least 1."""
     return round(number) >= 1 and abs(number - round(number)) < ROUND_OFF
-
-
-def in_cells(store: np.ndarray, times_s: np.ndarray, grid: Grid, part: slice) -> Frames:
-    """Frames of a part of the trajectory on a grid."""
-    x, z, vx, vz = (store[part, row] for row in range(4))
-    # one frame after the other: all at once would take several times the memory
-    cells = np.stack([grid.cell_of(*places) for places in zip(x, z, strict=True)])
-    return Frames(times_s[part], x, z, cells, vx, vz)
 
 
 def realisations(table: pd.DataFrame, n_times: int) -> np.ndarray:
@@ -115,7 +116,7 @@ def floor_rows(curves: np.ndarray) -> list[Row]:
     """Noise floor of each group, where there are repeats."""
     if len(curves) < 2:
         return []
-    floor, _ = noise_floor(curves)
+    floor, _ = noise_floor(curves[:, 1:])
     return [
         _row("noise_floor", "dem", np.nan, np.nan, group, value, "1")
         for (_, group), value in zip(GROUPS, floor, strict=True)

@@ -17,8 +17,8 @@ from bedchain.figures.film import Canvas, in_their_cells, voidages
 from bedchain.figures.style import close_frame, figure_style
 from bedchain.files import complete
 from bedchain.stage import LOG, stage
-from bedchain.trajectory.cell_store import frames_up_to, open_cells, window_frames
 from bedchain.trajectory.frames import lag_frames
+from bedchain.trajectory.realisations import open_realisation
 
 FRAMES_PER_SECOND = 20
 # of particles that change from frame to frame: 4 MB for 10 s
@@ -57,23 +57,23 @@ def make_film(
     progress : bool
         Show a bar with the time left.
     """
-    store, chain = open_cells(cells), registry.load(transitions)
-    frames = window_frames(trajectory, metadata, store, start_s, end_s)
+    bed, chain = open_realisation("the run", trajectory, metadata, cells), registry.load(transitions)
+    frames = bed.window(start_s, end_s)
     lag = lag_frames(chain.lag_s, frames.interval_s)
-    start = frames_up_to(trajectory, metadata, store, start_s, lag)
+    start = bed.up_to(start_s, lag)
     for_paths, for_places = np.random.default_rng(seed).spawn(2)
-    top = min(store.grid.height_m, (1 + FREEBOARD) * float(max(z.max() for z in frames.z_m)))
-    canvas = Canvas(store.grid.width_m, top, diameter_m, colours)
+    top = min(bed.grid.height_m, (1 + FREEBOARD) * float(max(z.max() for z in frames.z_m)))
+    canvas = Canvas(bed.grid.width_m, top, diameter_m, colours)
     left = frames.x_m[0] < split_x_m
     dem = zip(frames.x_m[::lag], frames.z_m[::lag], strict=True)
     paths = chain.paths(start, (len(frames.times_s) - 1) // lag, for_paths)
-    places = in_their_cells(paths, store.grid, for_places.random((2, left.size)))
-    voidage = voidages(frames, lag, store.grid.width_m, top, gas_cell_m, thickness_m, diameter_m)
+    places = in_their_cells(paths, bed.grid, for_places.random((2, left.size)))
+    voidage = voidages(frames, lag, bed.grid.width_m, top, gas_cell_m, thickness_m, diameter_m)
     rcParams["animation.ffmpeg_path"] = imageio_ffmpeg.get_ffmpeg_exe()
     writer = FFMpegWriter(fps=FRAMES_PER_SECOND, bitrate=KILOBITS_PER_SECOND)
     with figure_style(), complete(film) as temporary:
         # a film's frames are of even numbers of pixels
-        wide = 2 * round(DPI * HEIGHT_IN * (2.4 * store.grid.width_m / top + 0.35) / 2) / DPI
+        wide = 2 * round(DPI * HEIGHT_IN * (2.4 * bed.grid.width_m / top + 0.35) / 2) / DPI
         figure, panels = plt.subplots(1, 3, figsize=(wide, HEIGHT_IN), sharey=True)
         names = ("DEM", "voidage of the DEM", f"{chain.name} chain")
         images = [_panel(*pair, canvas) for pair in zip(panels, names, strict=True)]

@@ -13,8 +13,9 @@ from bedchain.files import write_arrays
 from bedchain.measures.batch import batch_of
 from bedchain.measures.mixing import GROUPS
 from bedchain.stage import LOG, stage
-from bedchain.trajectory.cell_store import frame_at, frames_up_to, open_cells, window_frames
+from bedchain.trajectory.cell_store import frame_at
 from bedchain.trajectory.frames import lag_frames, whole_steps, window
+from bedchain.trajectory.realisations import open_realisation
 from bedchain.uncertainty.bands import block_chains, block_length
 
 # a moment lies on a step up to round-off of the division
@@ -61,25 +62,25 @@ def run_chain(
     DataError, UserError
         The window or a moment is no whole number of steps.
     """
-    store, model = open_cells(cells), registry.load(transitions)
-    lag = lag_frames(model.lag_s, float(np.diff(store.times_s).mean()))
-    which = window(store.times_s, start_s, end_s)
+    bed, model = open_realisation("the run", trajectory, metadata, cells), registry.load(transitions)
+    lag = lag_frames(model.lag_s, float(np.diff(bed.times_s).mean()))
+    which = window(bed.times_s, start_s, end_s)
     steps = whole_steps(which.stop - which.start, lag)
-    start = frames_up_to(trajectory, metadata, store, start_s, lag)
-    batch = batch_of(store.grid, np.asarray(start.cells[-1]), batch_height_m)[None]
+    start = bed.up_to(start_s, lag)
+    batch = batch_of(bed.grid, np.asarray(start.cells[-1]), batch_height_m)[None]
     at = moment_steps(moments_s, model.lag_s)
     for_mixing, for_batch, for_blocks = np.random.default_rng(seed).spawn(3)
-    learned_from = window_frames(trajectory, metadata, store, learning["start_s"], learning["end_s"])
+    learned_from = bed.window(learning["start_s"], learning["end_s"])
     splits = (split_x_m, split_z_m)
     write_arrays(
         chain,
         {
-            "times_s": store.times_s[frame_at(store.times_s, start_s)] + model.lag_s * np.arange(steps + 1),
+            "times_s": bed.times_s[frame_at(bed.times_s, start_s)] + model.lag_s * np.arange(steps + 1),
             "groups": np.array([group for _, group in GROUPS]),
             "remaining": model.mixing(start, *splits, steps),
             "remaining_monte_carlo": model.mixing(start, *splits, steps, for_mixing),
             "remaining_replicates": block_chains(
-                registry.relearner(model.name, learned_from, store.grid, lag, estimator, **(options or {})),
+                registry.relearner(model.name, learned_from, bed.grid, lag, estimator, **(options or {})),
                 lambda again: again.mixing(start, *splits, steps),
                 len(learned_from.times_s) - lag,
                 block_length(learned_from, split_x_m, lag),

@@ -2,6 +2,7 @@
 """Every model chosen by validation and tested once: results/<case>/selection.csv, scores.csv and curves."""
 
 import json
+import math
 from pathlib import Path
 from typing import Any
 
@@ -16,14 +17,15 @@ from bedchain.files import write_arrays, write_csv
 from bedchain.measures.lagrangian import Statistics
 from bedchain.stage import LOG, stage
 from bedchain.studies.records import only, stamp
+from bedchain.studies.scan import Task, named
 from bedchain.studies.scores.candidates import Candidate, candidates
 from bedchain.studies.scores.held_out import HeldOut, hold_out
 from bedchain.studies.scores.rows import dem_rows, score_rows
-from bedchain.studies.scores.selection import Task, leading_to, named, select
+from bedchain.studies.scores.selection import select
 from bedchain.studies.scores.tested_chain import Trial, batch_shares, dem_statistics, try_out
 from bedchain.trajectory.frames import lag_frames, window
 from bedchain.trajectory.grid import Grid
-from bedchain.trajectory.realisations import open_repeats, open_run
+from bedchain.trajectory.realisations import open_realisation, open_repeats
 from bedchain.trajectory.regrid import regrid
 from bedchain.uncertainty.bands import memory
 
@@ -76,7 +78,7 @@ def score_models(
     UserError, DataError
         A window or a repeat lacks frames; no model could be validated.
     """
-    run = open_run("the run", trajectory, metadata)
+    run = open_realisation("the run", trajectory, metadata)
     runs = [run, *open_repeats(repeats, run)]
     grid = Grid(run.width_m, run.height_m, columns, rows)
     start_s, end_s = comparison["start_s"], comparison["end_s"]
@@ -85,7 +87,7 @@ def score_models(
     if compared.start + 1 < which.stop:
         raise UserError("comparison.start_s is inside the learning window: take at least learning.end_s")
     splits, lag = (split_x_m, split_z_m), lag_frames(lag_s, run.interval_s)
-    spacing = memory(run.frames(grid, which), split_x_m)
+    spacing = math.ceil(memory(run.frames(grid, which), split_x_m))
     task = Task(grid, splits, estimator, spacing, compared.stop - 1 - compared.start)
     tried = candidates(registry.LEARNERS, grid, lag, diameter_m) if tried is None else tried
     about = {"task": repr(task), "learning": learning, "comparison": comparison}
@@ -162,7 +164,7 @@ def lagrangian_table(found: dict[str, list[Statistics]]) -> pd.DataFrame:
 def batch_of_best(trial: Trial, held: HeldOut, model: str, one: Candidate, seed: int) -> dict[str, Any]:
     """Where the best model takes the batch, as chain_<model>.npz holds it, on the case's cells."""
     start, inside = held.starts[0], held.moments[held.moments <= held.starts[0].length]
-    begin = leading_to(held.runs[0], trial.chain.grid, start.frame, trial.lag)
+    begin = held.runs[0].leading_to(trial.chain.grid, start.frame, trial.lag)
     rng = np.random.default_rng(seed)
     drawn = batch_shares(trial.chain, begin, held.batches[0], inside, trial.lag, rng)
     return {

@@ -8,6 +8,7 @@ The folder holds the case's run (trajectory, bed_series.csv) and its repeats. Wh
 """
 
 import argparse
+import math
 from pathlib import Path
 
 import numpy as np
@@ -21,15 +22,15 @@ from bedchain.files import write_csv
 from bedchain.provenance import machine
 from bedchain.stage import LOG, stage
 from bedchain.studies.records import only, stamp
+from bedchain.studies.scan import Task
 from bedchain.studies.scores.marked_starts import Start, starts_in
-from bedchain.studies.scores.selection import Task
 from bedchain.studies.tradeoff import measured_chains, presets, simulated_beds
 from bedchain.studies.tradeoff.bed_variants import bed_variants
 from bedchain.studies.tradeoff.chain_settings import Own
 from bedchain.studies.tradeoff.observables import Reference, all_columns
 from bedchain.studies.tradeoff.reference import compared, own_grid, realisations, splits_of
 from bedchain.trajectory.frames import lag_frames, window
-from bedchain.trajectory.realisations import Run, open_repeats, open_run
+from bedchain.trajectory.realisations import Realisation, open_realisation, open_repeats
 from bedchain.uncertainty.bands import memory
 from bedchain.uncertainty.noise_floor import ROUND_OFF
 
@@ -93,13 +94,13 @@ def opened(case: Case, folder: Path) -> tuple[measured_chains.Bench, list[Path]]
     mixing = [repeat / "mixing.csv" for repeat in repeats]
     moving = [repeat / "trajectory.npy" for repeat in repeats if (repeat / "trajectory.npy").exists()]
     main = folder / "trajectory.npy"
-    run = open_run("the run", main, main.with_suffix(".json"))
+    run = open_realisation("the run", main, main.with_suffix(".json"))
     runs = [run, *open_repeats(moving, run)]
     series = [path.parent / "bed_series.csv" for path in (main, *moving)]
     grid, which = own_grid(run, case), compared(run, case)
     learning = window(run.times_s, case["learning"]["start_s"], case["learning"]["end_s"])
     lag, splits = lag_frames(case["chain"]["lag_s"], run.interval_s), splits_of(case)
-    spacing = memory(run.frames(grid, learning), splits[0])
+    spacing = math.ceil(memory(run.frames(grid, learning), splits[0]))
     starts = starts_in(which, spacing)[: 1 if mixing else None]
     reference = realisations(runs, series, mixing, case, starts)
     say(reference, runs, starts)
@@ -116,7 +117,7 @@ def opened(case: Case, folder: Path) -> tuple[measured_chains.Bench, list[Path]]
     ]
 
 
-def say(reference: Reference, runs: list[Run], starts: list[Start]) -> None:
+def say(reference: Reference, runs: list[Realisation], starts: list[Start]) -> None:
     """What the noise floors are from."""
     if reference.repeated:
         LOG.info("noise floor of the curves: %d realisations", len(reference.curves))

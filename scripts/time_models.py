@@ -16,9 +16,9 @@ from bedchain.chains.estimators import transition_matrix
 from bedchain.errors import UserError
 from bedchain.files import write_csv
 from bedchain.stage import LOG, stage
-from bedchain.trajectory.cell_store import frames_up_to, open_cells, window_frames
 from bedchain.trajectory.frames import Frames, lag_frames, whole_steps
 from bedchain.trajectory.grid import Grid
+from bedchain.trajectory.realisations import open_realisation
 from bedchain.trajectory.store import read_manifest
 
 # a median of many repeats where they are short, of a few where one takes seconds
@@ -57,17 +57,17 @@ def time_models(
     options : dict of str to dict, optional
         Settings of each model only.
     """
-    store = open_cells(cells)
+    bed = open_realisation("the run", trajectory, metadata, cells)
     rows = [dem_row(read_manifest(dem), start_s, end_s)]
-    learning = in_memory(window_frames(trajectory, metadata, store, learn_start_s, learn_end_s))
-    comparison = window_frames(trajectory, metadata, store, start_s, end_s)
+    learning = in_memory(bed.window(learn_start_s, learn_end_s))
+    comparison = bed.window(start_s, end_s)
     for model, path in transitions.items():
         chain = registry.load(path)
         lag = lag_frames(chain.lag_s, comparison.interval_s)
-        start = in_memory(frames_up_to(trajectory, metadata, store, start_s, lag))
+        start = in_memory(bed.up_to(start_s, lag))
         steps = whole_steps(len(comparison.times_s), lag)
         rows += learning_rows(
-            model, learning, store.grid, lag, chain.lag_s, estimator, (options or {}).get(model, {})
+            model, learning, bed.grid, lag, chain.lag_s, estimator, (options or {}).get(model, {})
         )
         rows += running_rows(model, chain, start, steps, (split_x_m, split_z_m), seed)
     write_csv(pd.DataFrame(rows), timing)

@@ -77,7 +77,8 @@ def curve_errors(model: np.ndarray, dem: np.ndarray) -> dict[str, np.ndarray]:
     Parameters
     ----------
     model : (..., n_times, 4) ndarray
-        Share of each group on its side [1].
+        Share of each group on its side, from the start on [1]. The start itself, where all curves are 1 by
+        definition, does not count.
     dem : (n_times, 4) ndarray
 
     Returns
@@ -85,7 +86,7 @@ def curve_errors(model: np.ndarray, dem: np.ndarray) -> dict[str, np.ndarray]:
     dict of str to (..., 4) ndarray
         error_signed, error_rms, crossed_end [1].
     """
-    error = model - dem
+    error = model[..., 1:, :] - dem[1:]
     return {
         "error_signed": error.mean(axis=-2),
         "error_rms": np.sqrt((error**2).mean(axis=-2)),

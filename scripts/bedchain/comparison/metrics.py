@@ -14,11 +14,10 @@ from bedchain.measures.batch import total_variation
 from bedchain.measures.mixing import GROUPS
 from bedchain.uncertainty.bands import (
     BAND_SEED,
-    BLOCK_CORRELATIONS,
-    FEWEST_BLOCKS,
     REPLICATES,
     band,
     block_means,
+    block_steps,
     correlation_steps,
 )
 from bedchain.uncertainty.noise_floor import ROUND_OFF, noise_floor
@@ -201,8 +200,8 @@ def mean_metric(quantity: str, series: np.ndarray, unit: str) -> Metric:
     -------
     dict
     """
-    block = int(min(BLOCK_CORRELATIONS * correlation_steps(series), max(1, len(series) // FEWEST_BLOCKS)))
-    means = block_means(series, max(1, block), REPLICATES, np.random.default_rng(BAND_SEED))
+    block = block_steps(correlation_steps(series), len(series))
+    means = block_means(series, block, REPLICATES, np.random.default_rng(BAND_SEED))
     low, high = (float(end) for end in band(means))
     return metric(quantity, "dem", float(series.mean()), unit) | {"ci_low": low, "ci_high": high}
 
@@ -213,12 +212,13 @@ def floor_metrics(curves: NDArray[np.float64]) -> list[Metric]:
     Parameters
     ----------
     curves : (n_realisations, n_times, 4) ndarray
+        From the start on [1].
 
     Returns
     -------
     list of dict
     """
-    floor, (low, high) = noise_floor(curves)
+    floor, (low, high) = noise_floor(curves[:, 1:])
     rows: list[dict[str, Any]] = [metric("realisations", "dem", len(curves))]
     for column, (_, group) in enumerate(GROUPS):
         row = metric(f"noise_floor_{group}", "dem", floor[column])
@@ -244,15 +244,15 @@ def noise_metrics(source: str, model: NDArray[np.float64], curves: NDArray[np.fl
         noise floor over sqrt(n_realisations). error_over_noise: rms error against the main run over the
         noise floor; 1 is what the exact mean of the bed would have.
     """
-    floor, _ = noise_floor(curves)
-    error = model - curves.mean(axis=0)
-    rms = np.sqrt(((model - curves[0]) ** 2).mean(axis=0))
+    floor, _ = noise_floor(curves[:, 1:])
+    of_mean, of_run = curve_errors(model, curves.mean(axis=0)), curve_errors(model, curves[0])
     rows = []
     for column, (_, group) in enumerate(GROUPS):
         rows += [
-            metric(f"error_signed_of_mean_{group}", source, error[:, column].mean()),
-            metric(f"error_rms_of_mean_{group}", source, np.sqrt((error[:, column] ** 2).mean())),
+            metric(f"{name}_of_mean_{group}", source, of_mean[name][column])
+            for name in ("error_signed", "error_rms")
         ]
         if floor[column] > ROUND_OFF:
-            rows.append(metric(f"error_over_noise_{group}", source, rms[column] / floor[column]))
+            over = of_run["error_rms"][column] / floor[column]
+            rows.append(metric(f"error_over_noise_{group}", source, over))
     return rows

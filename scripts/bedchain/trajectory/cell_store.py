@@ -10,14 +10,10 @@ import numpy as np
 from bedchain.errors import DataError, UserError
 from bedchain.files import complete, map_array, write_npy_header
 from bedchain.trajectory.chunks import read_frames
-from bedchain.trajectory.frames import Frames, window
 from bedchain.trajectory.grid import Grid
-from bedchain.trajectory.store import open_trajectory
 
 # about 16 MB of positions and velocities at a time
 CHUNK_VALUES = 1_000_000
-# frames, in lags, that lead up to a start: more than any model's states look back
-HISTORY_LAGS = 4
 
 
 class CellStore(NamedTuple):
@@ -92,56 +88,6 @@ def open_cells(path: Path) -> CellStore:
     except (OSError, DataError, ValueError, KeyError, zipfile.BadZipFile) as error:
         raise UserError(f"{path}: not readable as cells ({error}); delete it and run again") from error
     return CellStore(cells, times_s, grid)
-
-
-def window_frames(trajectory: Path, metadata: Path, store: CellStore, start_s: float, end_s: float) -> Frames:
-    """Frames of a window, positions and cells, as memory maps.
-
-    Parameters
-    ----------
-    trajectory, metadata : Path
-        ``trajectory.npy`` and ``trajectory.json``.
-    store : CellStore
-    start_s, end_s : float
-        The window, both ends included [s].
-
-    Returns
-    -------
-    Frames
-    """
-    return _all_frames(trajectory, metadata, store).part(window(store.times_s, start_s, end_s))
-
-
-def frames_up_to(trajectory: Path, metadata: Path, store: CellStore, start_s: float, lag: int) -> Frames:
-    """The frame of a start, and before it those that a chain may need to know where the particles come from.
-
-    Parameters
-    ----------
-    trajectory, metadata : Path
-        ``trajectory.npy`` and ``trajectory.json``.
-    store : CellStore
-    start_s : float
-        Time of the last frame given [s].
-    lag : int
-        Frames in a step of the chain.
-
-    Returns
-    -------
-    Frames
-    """
-    start = frame_at(store.times_s, start_s)
-    first = max(0, start - HISTORY_LAGS * lag)
-    return _all_frames(trajectory, metadata, store).part(slice(first, start + 1))
-
-
-def _all_frames(trajectory: Path, metadata: Path, store: CellStore) -> Frames:
-    values, _ = open_trajectory(trajectory, metadata)
-    if values.shape[::2] != store.cells.shape:
-        raise UserError(
-            f"{trajectory} and the cells differ in frames or particles: delete cells.npz, run again"
-        )
-    x, z, vx, vz = (values[:, row] for row in range(4))
-    return Frames(store.times_s, x, z, store.cells, vx, vz)
 
 
 def frame_at(times_s: np.ndarray, time_s: float) -> int:

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Runs of one bed, the one learned from and its repeats: their frames on any grid of cells."""
+"""Realisations of one bed, the run learned from and its repeats: their frames on any grid of cells."""
 
 import logging
 from dataclasses import dataclass, replace
@@ -8,21 +8,24 @@ from pathlib import Path
 import numpy as np
 from numpy.typing import NDArray
 
-from bedchain.errors import UserError
+from bedchain.errors import DataError, UserError
+from bedchain.trajectory.cell_store import CellStore, frame_at, open_cells
 from bedchain.trajectory.frames import TIME_TOLERANCE, Frames, check_times, window
 from bedchain.trajectory.grid import Grid
 from bedchain.trajectory.store import open_trajectory
 
 LOG = logging.getLogger(__name__)
 
-# how far back a chain may look at most, in frames of the run that a repeat branches off from
+# lags that lead up to a start: more than the states of any model look back
+HISTORY_LAGS = 4
+# frames before its start that a repeat takes from the run that it branches off from
 PAST_FRAMES = 64
 # positions of one state written twice differ by less, over the width of the bed
 SAME_PLACE = 1e-6
 
 
 @dataclass(frozen=True)
-class Run:
+class Realisation:
     """One simulated bed on disk.
 
     Parameters
@@ -38,7 +41,9 @@ class Run:
     has_velocities : bool
         Whether the last two rows hold numbers.
     past : (n_past, 4, n_particles) array, optional
-        What came before the first frame, where another run holds it.
+        Frames before the first one, where another run holds them.
+    stored : CellStore, optional
+        Cells of all frames on the grid of the case.
     """
 
     name: str
@@ -48,11 +53,23 @@ class Run:
     height_m: float
     has_velocities: bool = True
     past: NDArray[np.floating] | None = None
+    stored: CellStore | None = None
 
     @property
     def interval_s(self) -> float:
         """Time between two frames [s]."""
         return float(self.times_s[-1] - self.times_s[0]) / max(len(self.times_s) - 1, 1)
+
+    @property
+    def grid(self) -> Grid:
+        """Grid of the stored cells."""
+        if self.stored is None:
+            raise DataError(f"{self.name} was opened without its cells")
+        return self.stored.grid
+
+    def window(self, start_s: float, end_s: float) -> Frames:
+        """Frames of a window, both ends included [s], with the stored cells; memory maps."""
+        return self.frames(self.grid, window(self.times_s, start_s, end_s))
 
     def frames(self, grid: Grid, which: slice) -> Frames:
         """Frames of a slice, with their cells on a grid.
@@ -61,16 +78,17 @@ class Run:
         ----------
         grid : Grid
         which : slice
-            Of the run's frames, both ends given.
+            Of the realisation's frames, both ends given.
 
         Returns
         -------
         Frames
-            Without velocities where the run has none: models take differences of positions then.
+            Without velocities where the realisation has none: models take differences of positions then.
         """
-        return self._made(grid, self.values[which], self.times_s[which], which.start)
+        cells = self._cells(grid, self.values[which], which.start)
+        return self._frames(self.times_s[which], self.values[which], cells)
 
-    def leading_to(self, grid: Grid, frame: int, before: int) -> Frames:
+    def leading_to(self, grid: Grid, frame: int, lag: int, lags: int = HISTORY_LAGS) -> Frames:
         """A frame and those before it that a chain may look back to, as far as there are any.
 
         Parameters
@@ -78,30 +96,59 @@ class Run:
         grid : Grid
         frame : int
             The last frame given.
-        before : int
-            Frames wanted before it [1].
+        lag : int
+            Frames in a step of the chain.
+        lags : int
+            Steps that lead up to the frame.
 
         Returns
         -------
         Frames
         """
-        values, first = self.values[max(0, frame - before) : frame + 1], max(0, frame - before)
+        before = lags * lag
         lacking = before - frame
-        if lacking > 0 and self.past is not None:
-            values = np.concatenate((self.past[-lacking:], values))
-            first = frame + 1 - len(values)
+        if lacking <= 0 or self.past is None:
+            return self.frames(grid, slice(max(0, frame - before), frame + 1))
+        values = np.concatenate((self.past[-lacking:], self.values[: frame + 1]))
+        first = frame + 1 - len(values)
         times = self.times_s[0] + self.interval_s * np.arange(first, frame + 1)
-        return self._made(grid, values, times, first)
+        return self._frames(times, values, cells_of(grid, values, first))
 
-    def _made(
-        self, grid: Grid, values: NDArray[np.floating], times_s: NDArray[np.float64], first: int
+    def up_to(self, time_s: float, lag: int) -> Frames:
+        """`leading_to` the frame at a time [s], with the stored cells."""
+        return self.leading_to(self.grid, frame_at(self.times_s, time_s), lag)
+
+    def _cells(self, grid: Grid, values: NDArray[np.floating], first: int) -> NDArray[np.int32]:
+        if self.stored is not None and grid == self.stored.grid:
+            return self.stored.cells[first : first + len(values)]
+        return cells_of(grid, values, first)
+
+    def _frames(
+        self, times_s: NDArray[np.float64], values: NDArray[np.floating], cells: NDArray[np.int32]
     ) -> Frames:
-        cells = np.stack([grid.cell_of(now[0], now[1], frame) for frame, now in enumerate(values, first)])
         vx, vz = (values[:, 2], values[:, 3]) if self.has_velocities else (None, None)
         return Frames(times_s, values[:, 0], values[:, 1], cells, vx, vz)
 
 
-def open_run(name: str, trajectory: Path, metadata: Path) -> Run:
+def cells_of(grid: Grid, values: NDArray[np.floating], first: int = 0) -> NDArray[np.int32]:
+    """Cells of all particles, a frame at a time: all at once would take several times the memory.
+
+    Parameters
+    ----------
+    grid : Grid
+    values : (n_frames, >= 2, n_particles) array
+        Rows x, z [m], ...
+    first : int
+        Number of the first frame, for messages.
+
+    Returns
+    -------
+    (n_frames, n_particles) int32 array
+    """
+    return np.stack([grid.cell_of(now[0], now[1], frame) for frame, now in enumerate(values, first)])
+
+
+def open_realisation(name: str, trajectory: Path, metadata: Path, cells: Path | None = None) -> Realisation:
     """Open a run's trajectory and check its times.
 
     Parameters
@@ -110,10 +157,12 @@ def open_run(name: str, trajectory: Path, metadata: Path) -> Run:
         For messages.
     trajectory, metadata : Path
         ``trajectory.npy`` and ``trajectory.json``.
+    cells : Path, optional
+        ``cells.npz``, the cells on the grid of the case.
 
     Returns
     -------
-    Run
+    Realisation
 
     Raises
     ------
@@ -131,29 +180,33 @@ def open_run(name: str, trajectory: Path, metadata: Path) -> Run:
     has = {"vx", "vz"} <= set(about["columns"]) and bool(np.isfinite(values[[0, -1], 2:]).all())
     if not has:
         LOG.info("%s: no velocities in %s; differences of positions take their place", name, trajectory)
-    return Run(name, values, times, float(about["width_m"]), float(about["height_m"]), has)
+    stored = None if cells is None else open_cells(cells)
+    if stored is not None and values.shape[::2] != stored.cells.shape:
+        raise UserError(f"{trajectory} and {cells} differ in frames or particles: run assign_cells again")
+    size = float(about["width_m"]), float(about["height_m"])
+    return Realisation(name, values, times, *size, has, stored=stored)
 
 
-def open_repeats(paths: list[Path], main: Run) -> list[Run]:
+def open_repeats(paths: list[Path], main: Realisation) -> list[Realisation]:
     """Open repeats of a run, and refuse what is no repeat of it.
 
     Parameters
     ----------
     paths : list of Path
         ``repeats/<N>/trajectory.npy``, each with its ``trajectory.json``.
-    main : Run
+    main : Realisation
         The run that they repeat.
 
     Returns
     -------
-    list of Run
+    list of Realisation
 
     Raises
     ------
     UserError
         Another number of particles, size of the bed or frame interval.
     """
-    runs = [open_run(f"repeat {path.parent.name}", path, path.with_suffix(".json")) for path in paths]
+    runs = [open_realisation(f"repeat {path.parent.name}", path, path.with_suffix(".json")) for path in paths]
     for run, path in zip(runs, paths, strict=True):
         pairs = {
             "particles": (run.values.shape[2], main.values.shape[2]),
@@ -170,7 +223,7 @@ def open_repeats(paths: list[Path], main: Run) -> list[Run]:
     return [_with_past(run, main) for run in runs]
 
 
-def _with_past(run: Run, main: Run) -> Run:
+def _with_past(run: Realisation, main: Realisation) -> Realisation:
     """A repeat that branches off from a frame of the main run, with what came before in that run."""
     frame = round((run.times_s[0] - main.times_s[0]) / main.interval_s)
     if not 0 < frame < len(main.times_s):
@@ -181,12 +234,12 @@ def _with_past(run: Run, main: Run) -> Run:
     return replace(run, past=main.values[max(0, frame - PAST_FRAMES) : frame])
 
 
-def part_of(run: Run, start_s: float, end_s: float) -> slice:
+def part_of(run: Realisation, start_s: float, end_s: float) -> slice:
     """Frames of a window, cut where the run ends early.
 
     Parameters
     ----------
-    run : Run
+    run : Realisation
     start_s, end_s : float
         The window, both ends included [s].
 

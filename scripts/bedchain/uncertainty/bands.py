@@ -154,6 +154,19 @@ def correlation_steps(series: NDArray[np.floating]) -> float:
     return max(1.0, 1.0 + 2.0 * float(rho[1:end].sum()))
 
 
+def block_steps(correlation: float, n_steps: int) -> int:
+    """Steps in a block: several correlation times, but at least `FEWEST_BLOCKS` blocks in the window.
+
+    Parameters
+    ----------
+    correlation : float
+        `correlation_steps` of what is observed [steps].
+    n_steps : int
+        Steps in the window.
+    """
+    return int(np.clip(BLOCK_CORRELATIONS * correlation, 1, max(1, n_steps // FEWEST_BLOCKS)))
+
+
 def block_length(frames: Frames, split_x_m: float, lag: int) -> int:
     """Length of the blocks that are drawn again: longer than the bed remembers, short against the window.
 
@@ -171,10 +184,7 @@ def block_length(frames: Frames, split_x_m: float, lag: int) -> int:
     int
         Steps.
     """
-    left = np.array([(x < split_x_m).mean() for x in frames.x_m])
-    height = np.array([z.mean() for z in frames.z_m])
-    remembered = max(correlation_steps(left), correlation_steps(height), lag)
-    return int(np.clip(BLOCK_CORRELATIONS * remembered, 1, max(1, (len(left) - lag) // FEWEST_BLOCKS)))
+    return block_steps(max(memory(frames, split_x_m), lag), len(frames.times_s) - lag)
 
 
 # blocks several times as long as the bed remembers, but at least this many of them in the window
@@ -188,8 +198,8 @@ REPLICATES = 400
 BAND_SEED = 11
 
 
-def memory(frames: Frames, split_x_m: float) -> int:
-    """Frames after which the bed has forgotten where it was, rounded up.
+def memory(frames: Frames, split_x_m: float) -> float:
+    """Frames after which the bed has forgotten where it was.
 
     Parameters
     ----------
@@ -200,9 +210,9 @@ def memory(frames: Frames, split_x_m: float) -> int:
 
     Returns
     -------
-    int
+    float
         The longer of the integrated correlation times of the share left and of the mean height [1].
     """
     left = np.array([(x < split_x_m).mean() for x in frames.x_m])
     height = np.array([z.mean() for z in frames.z_m])
-    return int(np.ceil(max(correlation_steps(left), correlation_steps(height))))
+    return max(correlation_steps(left), correlation_steps(height))

@@ -1,51 +1,51 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""How much realisations of one bed differ: the noise floor that chains are judged against."""
+"""The noise floor: the spread of realisations of one bed, against which chains are judged."""
 
 import numpy as np
 from numpy.typing import NDArray
 from scipy import stats
+
+from bedchain.uncertainty.deviations import deviations, rms
 
 LEVEL = 0.95
 # of sums of shares; realisations closer than this are one and the same
 ROUND_OFF = 1e-12
 
 
-def spread(curves: NDArray[np.float64]) -> NDArray[np.float64]:
-    """Standard deviation over realisations at each time.
+def floor_of(curves: NDArray[np.float64]) -> float:
+    """Noise floor of some columns of curves: the rms of their `deviations`.
+
+    It is the rms error that the bed's exact mean would still have against a single realisation, and the rms
+    difference between two realisations over sqrt(2).
 
     Parameters
     ----------
-    curves : (n_realisations, n_times, 4) ndarray
-        Share of each group on its side, by realisation; two at least [1].
-
-    Returns
-    -------
-    (n_times, 4) ndarray
-        With n_realisations - 1 in the denominator [1].
+    curves : (n_realisations, n_times, n_columns) ndarray
+        By realisation, two at least, from the first frame after the start: in the frame of the start, where
+        all curves are 1 by definition, realisations cannot differ, and no floor and no error counts it [1].
     """
-    return np.asarray(curves.std(axis=0, ddof=1))
+    return float(rms(deviations(curves, np.zeros(len(curves), np.int64))))
 
 
 def noise_floor(curves: NDArray[np.float64]) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
-    """Root mean square over time of the `spread`, with its 95 % interval.
+    """`floor_of` each column, with its 95 % interval.
 
-    It is the rms error that the bed's exact mean would still have against a single realisation, and the rms
-    difference between two realisations over sqrt(2). The interval is that of a variance of
-    n_realisations - 1 degrees of freedom (chi square): one for each further curve, since the times of
-    a curve go up and down together; it is rather too wide than too narrow.
+    The interval is that of a variance of n_realisations - 1 degrees of freedom (chi square): one for each
+    further curve, since the times of a curve go up and down together; it is rather too wide than too narrow.
 
     Parameters
     ----------
-    curves : (n_realisations, n_times, 4) ndarray
+    curves : (n_realisations, n_times, n_columns) ndarray
+        From the first frame after the start [1].
 
     Returns
     -------
-    floor : (4,) ndarray
+    floor : (n_columns,) ndarray
         [1]
-    interval : (2, 4) ndarray
+    interval : (2, n_columns) ndarray
         [1]
     """
-    floor = np.sqrt((spread(curves) ** 2).mean(axis=0))
+    floor = np.array([floor_of(curves[..., [column]]) for column in range(curves.shape[-1])])
     degrees = len(curves) - 1
     ends = stats.chi2.ppf([(1 + LEVEL) / 2, (1 - LEVEL) / 2], degrees)
     return floor, np.sqrt(degrees / ends)[:, None] * floor

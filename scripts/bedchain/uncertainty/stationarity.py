@@ -8,7 +8,7 @@ import pandas as pd
 from numpy.typing import NDArray
 from scipy import stats
 
-from bedchain.uncertainty.bands import BLOCK_CORRELATIONS, FEWEST_BLOCKS, correlation_steps
+from bedchain.uncertainty.bands import block_steps, correlation_steps
 
 LEVEL = 0.95
 REPLICATES = 1000
@@ -66,7 +66,7 @@ def drift(series: NDArray[np.floating], level: float = LEVEL) -> Drift:
     weights = line / (line @ line)
     change = float(weights @ values)
     rest = values - values.mean() - change * line
-    block = int(min(BLOCK_CORRELATIONS * correlation_steps(rest), len(rest) // FEWEST_BLOCKS))
+    block = block_steps(correlation_steps(rest), len(rest))
     rng = np.random.default_rng(SEED)
     n_blocks = -(-len(rest) // block)
     first = rng.integers(0, len(rest) - block + 1, (REPLICATES, n_blocks))

@@ -22,8 +22,9 @@ def by_quantity(rows):
 
 def test_errors_by_hand():
     errors = curve_errors(MODEL, DEM)
-    np.testing.assert_allclose(errors["error_signed"], [0.1, -0.1, 0, 0], atol=1e-15)
-    np.testing.assert_allclose(errors["error_rms"], [0.2 / 2**0.5, 0.2 / 2**0.5, 0, 0], atol=1e-15)
+    # the start, where all curves are 1, does not count
+    np.testing.assert_allclose(errors["error_signed"], [0.2, -0.2, 0, 0], atol=1e-15)
+    np.testing.assert_allclose(errors["error_rms"], [0.2, 0.2, 0, 0], atol=1e-15)
     np.testing.assert_allclose(errors["crossed_end"], [0.3, 0.6, 0.3, 0.2])
 
 
@@ -32,7 +33,7 @@ def test_bands_hold_the_middle_of_the_replicates():
     replicates = MODEL + shifts[:, None, None]
     row = by_quantity(model_metrics("static", MODEL, DEM, replicates))["error_signed_left"]
     assert (row["source"], row["unit"]) == ("static", "1")
-    assert [row["value"], row["ci_low"], row["ci_high"]] == pytest.approx([0.1, 0.005, 0.195])
+    assert [row["value"], row["ci_low"], row["ci_high"]] == pytest.approx([0.2, 0.105, 0.295])
     assert np.isnan(by_quantity(model_metrics("static", MODEL, DEM))["error_signed_left"]["ci_low"])
 
 

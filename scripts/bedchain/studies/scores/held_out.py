@@ -8,10 +8,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from bedchain.measures.batch import batch_of, share_by_cell
+from bedchain.studies.scan import observed_curves
 from bedchain.studies.scores.marked_starts import Start, starts_in
-from bedchain.studies.scores.selection import observed_curves
 from bedchain.trajectory.grid import Grid
-from bedchain.trajectory.realisations import Run, part_of
+from bedchain.trajectory.realisations import Realisation, part_of
 from bedchain.uncertainty.deviations import deviations, distances, mean_of_others, resampled, stacked
 
 Array = NDArray[np.float64]
@@ -27,7 +27,7 @@ class HeldOut:
 
     Parameters
     ----------
-    runs : sequence of Run
+    runs : sequence of Realisation
         The first is that learned from.
     starts : sequence of Start
         Where particles are marked, in all runs.
@@ -43,7 +43,7 @@ class HeldOut:
         Share of the batch in each cell, NaN after a start's last frame [1].
     """
 
-    runs: Sequence[Run]
+    runs: Sequence[Realisation]
     starts: Sequence[Start]
     grid: Grid
     curves: Array
@@ -58,7 +58,7 @@ class HeldOut:
 
     @property
     def run(self) -> NDArray[np.int64]:
-        """Run of each start."""
+        """Realisation of each start."""
         return np.array([start.run for start in self.starts])
 
     @property
@@ -110,14 +110,14 @@ class HeldOut:
 
 
 def hold_out(
-    runs: Sequence[Run], grid: Grid, comparison_s: tuple[float, float], spacing: int,
+    runs: Sequence[Realisation], grid: Grid, comparison_s: tuple[float, float], spacing: int,
     splits: tuple[float, float], batch_height_m: float, moments_s: Sequence[float],
 ) -> HeldOut:  # fmt: skip
     """Collect what the DEM does in the comparison window of each run.
 
     Parameters
     ----------
-    runs : sequence of Run
+    runs : sequence of Realisation
         The first is that learned from.
     grid : Grid
         The case's cells.
@@ -160,5 +160,5 @@ def hold_out(
     return HeldOut(runs, starts, grid, curves, batches, moments, np.array(densities))
 
 
-def _cells(run: Run, grid: Grid, frame: int) -> NDArray[np.int32]:
+def _cells(run: Realisation, grid: Grid, frame: int) -> NDArray[np.int32]:
     return grid.cell_of(run.values[frame, 0], run.values[frame, 1])

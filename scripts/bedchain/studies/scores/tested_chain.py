@@ -8,18 +8,10 @@ from numpy.typing import NDArray
 
 from bedchain.chains.chain import Chain
 from bedchain.measures.lagrangian import Places, Statistics, corrected, in_cells, statistics
+from bedchain.studies.scan import Task, at_frames, learned, predicted_curves, running_cost, timed
 from bedchain.studies.scores.candidates import Candidate, grid_of
 from bedchain.studies.scores.held_out import HeldOut
 from bedchain.studies.scores.marked_starts import Start
-from bedchain.studies.scores.selection import (
-    Task,
-    at_frames,
-    leading_to,
-    learned,
-    predicted_curves,
-    running_cost,
-    timed,
-)
 from bedchain.trajectory.frames import Frames
 from bedchain.trajectory.regrid import regrid
 from bedchain.uncertainty.deviations import stacked
@@ -96,7 +88,7 @@ def try_out(candidate: Candidate, learning: slice, held: HeldOut, task: Task, se
     rng = np.random.default_rng(seed)
     curves, densities, drawn = [], [], []
     for start, batch in zip(held.starts, held.batches, strict=True):
-        begin = leading_to(held.runs[start.run], chain.grid, start.frame, lag)
+        begin = held.runs[start.run].leading_to(chain.grid, start.frame, lag)
         curves.append(predicted_curves(chain, held.runs[start.run], start, lag, task.splits))
         inside = held.moments[held.moments <= start.length]
         shares = batch_shares(chain, begin, batch, inside, lag)
@@ -104,7 +96,7 @@ def try_out(candidate: Candidate, learning: slice, held: HeldOut, task: Task, se
         one = chain.mixing(begin, *task.splits, -(-start.length // lag), rng)
         drawn.append(at_frames(one, lag, start.length))
     lagrangian = [lagrangian_of(chain, held, number, lag, rng) for number in range(len(held.runs))]
-    first = leading_to(run, grid, held.starts[0].frame, lag)
+    first = run.leading_to(grid, held.starts[0].frame, lag)
     cost = {"learn_s": learn_s} | running_cost(chain, first, task)
     return Trial(chain, lag, stacked(curves), _padded(densities, held), stacked(drawn), lagrangian, cost)
 
@@ -172,7 +164,7 @@ def lagrangian_of(
     seen = np.stack([chain.grid.cell_of(now[0], now[1]) for now in values])
     dem_in_cells = statistics(in_cells(chain.grid, seen, interval_s), steps, span, edges)
     start = _first_start(held, number)
-    begin = leading_to(held.runs[number], chain.grid, start.frame, lag)
+    begin = held.runs[number].leading_to(chain.grid, start.frame, lag)
     cells = np.stack([*chain.paths(begin, len(values) - 1, rng)])
     model = statistics(in_cells(chain.grid, cells, interval_s), steps, span, edges)
     return corrected(model, dem, dem_in_cells), dem

@@ -2,10 +2,9 @@
 """Learn and run chains of many settings, and measure cost and errors of each."""
 
 import logging
-import time
 from collections.abc import Callable
 from dataclasses import dataclass, replace
-from functools import lru_cache, partial
+from functools import lru_cache
 from pathlib import Path
 from typing import Any
 
@@ -14,10 +13,10 @@ from numpy.typing import NDArray
 
 from bedchain.chains.chain import Chain
 from bedchain.errors import DataError
-from bedchain.studies.records import record_of, remembered
+from bedchain.studies.records import record_of
+from bedchain.studies.scan import Task, at_frames, learned, observed_curves, scan, timed
 from bedchain.studies.scores.candidates import Candidate, grid_of
 from bedchain.studies.scores.marked_starts import Start, split, starts_in
-from bedchain.studies.scores.selection import Task, at_frames, learned, observed_curves, timed
 from bedchain.studies.scores.tested_chain import batch_shares
 from bedchain.studies.tradeoff.chain_settings import Own, Setting, settings
 from bedchain.studies.tradeoff.observables import (
@@ -29,7 +28,7 @@ from bedchain.studies.tradeoff.observables import (
 )
 from bedchain.trajectory.frames import Frames
 from bedchain.trajectory.grid import Grid
-from bedchain.trajectory.realisations import Run
+from bedchain.trajectory.realisations import Realisation
 from bedchain.trajectory.regrid import regrid
 from bedchain.uncertainty.deviations import interval, resampled, rms, stacked
 
@@ -44,6 +43,8 @@ MOMENTS = 10
 # a Monte Carlo of few tracers is drawn so often, lest its error hang on one draw; one of many takes long
 DRAWS, FEW_TRACERS = 8, 10_000
 MB = 1e6
+# lags that lead up to a start: as far as a chain of the second order looks back
+LAGS_BACK = 1
 
 
 @dataclass(frozen=True)
@@ -76,7 +77,7 @@ class Bench:
 
     Parameters
     ----------
-    run : Run
+    run : Realisation
         The run learned from.
     own : Own
         The case's own chain.
@@ -90,7 +91,7 @@ class Bench:
         Of the Monte Carlo runs.
     """
 
-    run: Run
+    run: Realisation
     own: Own
     task: Task
     reference: Reference
@@ -113,19 +114,18 @@ def measure_all(bench: Bench, kept: Path) -> list[Row]:
     list of dict
         One a setting: `labels`, cost, errors, ``problem`` (empty where all went well).
     """
-    tried, rows, begun, made = settings(bench.own), [], time.monotonic(), 0
+    tried = settings(bench.own)
     if any(not record_of(kept, setting.key).exists() for setting in tried):
         warm_up(bench)
     in_memory = lru_cache(maxsize=1)(lambda grid: bench.run.frames(grid, bench.own.learning))
-    for number, setting in enumerate(tried, 1):
-        record = record_of(kept, setting.key)
-        made += not record.exists()
-        result = remembered(record, partial(tested, setting, bench, in_memory))
-        left_s = (time.monotonic() - begun) / max(made, 1) * (len(tried) - number)
-        LOG.info("%d of %d chains, %s: %s; about %.0f s left", number, len(tried), setting.key,
-                 result["problem"] or f"rms error {result['mixing_error_1']:.4f}", left_s)  # fmt: skip
-        rows.append(labels(setting, bench) | result)
-    return rows
+    results = scan(
+        tried,
+        lambda setting: tested(setting, bench, in_memory),
+        lambda setting: setting.key,
+        lambda result: result["problem"] or f"rms error {result['mixing_error_1']:.4f}",
+        kept,
+    )
+    return [labels(setting, bench) | result for setting, result in zip(tried, results, strict=True)]
 
 
 def tested(setting: Setting, bench: Bench, in_memory: Callable[[Grid], Frames]) -> Row:
@@ -226,12 +226,12 @@ def validated(setting: Setting, bench: Bench, frames: Frames) -> Row:
     return dict(zip(names, (float(rms(table)), low, high), strict=True))
 
 
-def folds(run: Run, learning: slice, task: Task) -> tuple[Fold, ...]:
+def folds(run: Realisation, learning: slice, task: Task) -> tuple[Fold, ...]:
     """The two of `marked_starts.split`: the window's last part judged, and as long a first part.
 
     Parameters
     ----------
-    run : Run
+    run : Realisation
     learning : slice
         Frames of the learning window.
     task : Task
@@ -291,7 +291,7 @@ def _begin(
     grid: Grid, bench: Bench, start: Start, lag: int, rng: np.random.Generator | None, tracers: int
 ) -> Frames:
     """Frames up to a start, as far back as a chain of the second order looks; of drawn particles."""
-    found = bench.run.leading_to(grid, start.frame, lag)
+    found = bench.run.leading_to(grid, start.frame, lag, LAGS_BACK)
     if rng is None:
         return found
     number = found.cells.shape[1]

@@ -12,7 +12,6 @@ from scipy import stats
 from bedchain.uncertainty.bands import band
 from bedchain.uncertainty.deviations import (
     SIDES,
-    deviations,
     distances,
     interval,
     mean_of_others,
@@ -20,7 +19,7 @@ from bedchain.uncertainty.deviations import (
     rms,
     stacked,
 )
-from bedchain.uncertainty.noise_floor import LEVEL, ROUND_OFF
+from bedchain.uncertainty.noise_floor import LEVEL, ROUND_OFF, floor_of
 
 Array = NDArray[np.float64]
 Row = dict[str, Any]
@@ -94,8 +93,7 @@ class Reference:
         """
         found = dict.fromkeys(UNITS, np.nan)
         if self.repeated:
-            apart = deviations(self.curves, np.zeros(len(self.curves), np.int64))
-            found |= {name: float(rms(apart[..., list(SIDES[name])])) for name in CURVES}
+            found |= {name: floor_of(self.curves[..., list(SIDES[name])]) for name in CURVES}
         found[DENSITY] = float(np.nanmean(self._between_densities()))
         for name, values in self.scalars.items():
             known = np.array(values)[np.isfinite(values)]

@@ -13,12 +13,12 @@ from bedchain.comparison.curves import curves_of
 from bedchain.dem.series import read_series
 from bedchain.measures.batch import share_by_cell
 from bedchain.measures.dispersion import dispersion_by_height
+from bedchain.studies.scan import observed_curves
 from bedchain.studies.scores.marked_starts import Start
-from bedchain.studies.scores.selection import observed_curves
 from bedchain.studies.scores.tested_chain import SPAN_S
 from bedchain.studies.tradeoff.observables import Reference
 from bedchain.trajectory.grid import Grid
-from bedchain.trajectory.realisations import Run, part_of
+from bedchain.trajectory.realisations import Realisation, part_of
 from bedchain.uncertainty.deviations import stacked
 
 Array = NDArray[np.float64]
@@ -31,23 +31,23 @@ def splits_of(case: Case) -> tuple[float, float]:
     return case["mixing"]["split_x_m"], case["mixing"]["split_z_m"]
 
 
-def compared(run: Run, case: Case) -> slice:
+def compared(run: Realisation, case: Case) -> slice:
     """Frames of the comparison window."""
     return part_of(run, case["comparison"]["start_s"], case["comparison"]["end_s"])
 
 
-def own_grid(run: Run, case: Case) -> Grid:
+def own_grid(run: Realisation, case: Case) -> Grid:
     """The case's cells on the bed of a run."""
     return Grid(run.width_m, run.height_m, case["cells"]["columns"], case["cells"]["rows"])
 
 
-def curves_seen(run: Run, case: Case) -> Array:
+def curves_seen(run: Realisation, case: Case) -> Array:
     """Mixing curves of a run over the comparison window, from the frame after its start, (n_frames, 4)."""
     which = compared(run, case)
     return observed_curves(run, Start(0, 0, which.start, which.stop - 1), splits_of(case))[1:]
 
 
-def densities_seen(run: Run, case: Case) -> Array:
+def densities_seen(run: Realisation, case: Case) -> Array:
     """Mean shares in the case's cells over either half of the comparison window, (2, n_cells)."""
     grid, which = own_grid(run, case), compared(run, case)
     half = which.start + 1 + (which.stop - 1 - which.start) // 2
@@ -59,12 +59,12 @@ def densities_seen(run: Run, case: Case) -> Array:
     )
 
 
-def scalars_seen(run: Run, series: pd.DataFrame | None, case: Case) -> dict[str, float]:
+def scalars_seen(run: Realisation, series: pd.DataFrame | None, case: Case) -> dict[str, float]:
     """What a bed does as a whole over the comparison window.
 
     Parameters
     ----------
-    run : Run
+    run : Realisation
     series : DataFrame or None
         ``bed_series.csv``; None where it was not kept.
     case : Case
@@ -161,13 +161,17 @@ def granular_temperature(
 
 
 def realisations(
-    runs: Sequence[Run], series: Sequence[Path], mixing: Sequence[Path], case: Case, starts: Sequence[Start]
+    runs: Sequence[Realisation],
+    series: Sequence[Path],
+    mixing: Sequence[Path],
+    case: Case,
+    starts: Sequence[Start],
 ) -> Reference:
     """The reference of a case.
 
     Parameters
     ----------
-    runs : sequence of Run
+    runs : sequence of Realisation
         The run, and the repeats whose positions are there.
     series : sequence of Path
         ``bed_series.csv`` of each of them.

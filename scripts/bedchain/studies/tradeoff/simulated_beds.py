@@ -18,7 +18,7 @@ from bedchain.errors import UserError
 from bedchain.studies.tradeoff.bed_variants import REALISATION, BedVariant
 from bedchain.studies.tradeoff.observables import Reference, Seen, seen_errors
 from bedchain.studies.tradeoff.reference import curves_seen, densities_seen, scalars_seen
-from bedchain.trajectory.realisations import Run, open_run
+from bedchain.trajectory.realisations import Realisation, open_realisation
 from bedchain.trajectory.store import read_manifest, write_trajectory
 
 LOG = logging.getLogger(__name__)
@@ -109,12 +109,12 @@ def seen(folder: Path, case: Case) -> Seen:
             (folder / name).unlink(missing_ok=True)
 
 
-def parsed(folder: Path, case: Case) -> Run:
+def parsed(folder: Path, case: Case) -> Realisation:
     """The frames of a run, in one file."""
     trajectory, metadata = folder / "trajectory.npy", folder / "trajectory.json"
     size = case["bed"]["width_m"], case["bed"]["height_m"]
     write_trajectory(folder / "dem.json", trajectory, metadata, *size, progress=False)
-    return open_run(folder.name, trajectory, metadata)
+    return open_realisation(folder.name, trajectory, metadata)
 
 
 def watched(work: Callable[[], Made], word: str, kept: Path) -> tuple[Made, float]:

@@ -10,11 +10,11 @@ import pytest
 from bedchain.chains.registry import LEARNERS, learn
 from bedchain.errors import UserError
 from bedchain.studies.records import only, record_of, remembered, stamp
+from bedchain.studies.scan import at_frames
 from bedchain.studies.scores.candidates import SETTINGS, Candidate, candidates, grid_of, scaled
 from bedchain.studies.scores.marked_starts import split, starts_in
-from bedchain.studies.scores.selection import at_frames
 from bedchain.trajectory.grid import Grid
-from bedchain.trajectory.realisations import open_repeats, open_run, part_of
+from bedchain.trajectory.realisations import open_realisation, open_repeats, part_of
 from bedchain.uncertainty.bands import memory
 from made.frames import stirred
 from made.persistent_walk import INTERVAL_S, write
@@ -26,7 +26,9 @@ GRID = Grid(0.27, 1.05, 27, 105)
 def run(tmp_path):
     """A run of 41 frames of 5 particles."""
     values = np.random.default_rng(1).uniform(0, 0.1, (41, 4, 5))
-    return open_run("the run", write(tmp_path / "run", values, 0.1), tmp_path / "run" / "trajectory.json")
+    return open_realisation(
+        "the run", write(tmp_path / "run", values, 0.1), tmp_path / "run" / "trajectory.json"
+    )
 
 
 def test_paper_windows_are_those_of_the_protocol():
@@ -118,7 +120,7 @@ def test_a_run_with_a_missing_frame_is_refused(run, tmp_path):
     about["times_s"][20:] = [time + INTERVAL_S for time in about["times_s"][20:]]
     file.write_text(json.dumps(about))
     with pytest.raises(UserError, match="repeat 3, .*frames missing: frame 19"):
-        open_run("repeat 3", file.with_suffix(".npy"), file)
+        open_realisation("repeat 3", file.with_suffix(".npy"), file)
 
 
 def test_a_repeat_that_branches_off_knows_what_came_before(run, tmp_path):
@@ -127,14 +129,14 @@ def test_a_repeat_that_branches_off_knows_what_came_before(run, tmp_path):
     branch[1:] = branch[1:, :, ::-1]
     path = write(tmp_path / "1", branch, 0.1, first=20)
     repeat = open_repeats([path], run)[0]
-    at_start, main = repeat.leading_to(grid, 0, 4), run.leading_to(grid, 20, 4)
+    at_start, main = repeat.leading_to(grid, 0, 1), run.leading_to(grid, 20, 1)
     for name in ("times_s", "x_m", "z_m", "cells", "vx_m_s", "vz_m_s"):
         np.testing.assert_allclose(getattr(at_start, name), getattr(main, name), rtol=1e-6)
-    later = repeat.leading_to(grid, 2, 4)
+    later = repeat.leading_to(grid, 2, 1)
     np.testing.assert_array_equal(later.x_m, np.concatenate((run.values[18:20, 0], branch[:3, 0])))
     branch[0] = branch[0, :, ::-1]
     other = open_repeats([write(tmp_path / "2", branch, 0.1, first=20)], run)[0]
-    assert other.past is None and len(other.leading_to(grid, 0, 4).times_s) == 1
+    assert other.past is None and len(other.leading_to(grid, 0, 1).times_s) == 1
 
 
 def test_what_is_no_repeat_is_refused(run, tmp_path):
@@ -151,7 +153,7 @@ def test_missing_velocities_are_said_and_left_to_the_models(run, tmp_path, caplo
     values[:, 2:] = np.nan
     path = write(tmp_path / "none", values, 0.1)
     with caplog.at_level(logging.INFO, "bedchain"):
-        bare = open_run("the run", path, path.with_suffix(".json"))
+        bare = open_realisation("the run", path, path.with_suffix(".json"))
     assert "no velocities" in caplog.text and "differences of positions" in caplog.text
     frames = bare.frames(Grid(0.1, 0.1, 2, 2), slice(3, 9))
     assert frames.vx_m_s is None and frames.vz_m_s is None
