@@ -10,7 +10,7 @@ from bedchain.studies.verification.suite import verify
 from made import ROOT
 
 ERRORS = [
-    ("dragLaws.C", "150*solids", "130*solids", "uniform_bed", "lattice at 0.2 m/s, gidaspow"),
+    ("dragLaws.C", "150 * solids", "130 * solids", "uniform_bed", "lattice at 0.2 m/s, gidaspow"),
     ("pEqn.H", "== fvc::ddt(voidage) + ", "== ", "suspension", "sinking speed of a uniform suspension"),
 ]
 

@@ -19,23 +19,24 @@ string text(const Parts&... parts)
 
 }
 
-bedFoam::Guards::Guards
-(
+bedFoam::Guards::Guards(
     const fvMesh& mesh, const dictionary& parameters, const dictionary& gas, const Liggghts& dem
 )
-:
-    mesh_(mesh),
-    largestOverlap_(parameters.get<scalar>("largest_overlap")),
-    stopAtClip_(gas.get<word>("voidageClip") == "stop"),
-    number_(returnReduce(scalar(dem.count()), sumOp<scalar>()))
+    : mesh_(mesh),
+      largestOverlap_(parameters.get<scalar>("largest_overlap")),
+      stopAtClip_(gas.get<word>("voidageClip") == "stop"),
+      number_(returnReduce(scalar(dem.count()), sumOp<scalar>()))
 {
-    const std::vector<Plane> planes
-    {
-        {"left", 0, 0, 1}, {"right", 0, parameters.get<scalar>("width"), -1}, {"bottom", 2, 0, 1},
-        {"front", 1, parameters.get<scalar>("slab_low"), 1}, {"back", 1, parameters.get<scalar>("slab_high"), -1}
+    const std::vector<Plane> planes{
+        {"left", 0, 0, 1},
+        {"right", 0, parameters.get<scalar>("width"), -1},
+        {"bottom", 2, 0, 1},
+        {"front", 1, parameters.get<scalar>("slab_low"), 1},
+        {"back", 1, parameters.get<scalar>("slab_high"), -1}
     };
     // A bed of one layer has no walls in front and behind
-    for (const Plane& plane : planes) if (dem.hasFix(plane.name)) walls_.push_back(plane);
+    for (const Plane& plane : planes)
+        if (dem.hasFix(plane.name)) walls_.push_back(plane);
 }
 
 void bedFoam::Guards::stop(const Finding& found, const char* remedy) const
@@ -47,9 +48,8 @@ void bedFoam::Guards::stop(const Finding& found, const char* remedy) const
         // The first rank ends all of them while the others wait here
         returnReduce(label(0), sumOp<label>());
     }
-    FatalErrorInFunction
-        << worst.second().c_str() << ", at " << mesh_.time().value() << " s. The last finished segment is intact: "
-        << remedy << exit(FatalError);
+    FatalErrorInFunction << worst.second().c_str() << ", at " << mesh_.time().value()
+                         << " s. The last finished segment is intact: " << remedy << exit(FatalError);
     std::abort();
 }
 
@@ -60,7 +60,8 @@ bedFoam::Guards::Finding bedFoam::Guards::worstCell(const scalarField& magnitude
     {
         const scalar badness = std::isfinite(magnitude[cell]) ? magnitude[cell] : VGREAT;
         if (badness <= worst.first()) continue;
-        worst = Finding(badness, text(what, ' ', magnitude[cell], " in the gas cell at ", mesh_.C()[cell], " m"));
+        worst =
+            Finding(badness, text(what, ' ', magnitude[cell], " in the gas cell at ", mesh_.C()[cell], " m"));
     }
     return worst;
 }
@@ -82,8 +83,13 @@ void bedFoam::Guards::checkNumber(const Liggghts& dem)
         for (const auto& particle : seen_)
         {
             if (left.found(particle.first)) continue;
-            lost = Finding(1, text("particle ", particle.first, " has left the bed (", number_ - number,
-                " lost), last seen at ", particle.second, " m"));
+            lost = Finding(
+                1,
+                text(
+                    "particle ", particle.first, " has left the bed (", number_ - number,
+                    " lost), last seen at ", particle.second, " m"
+                )
+            );
         }
         stop(lost, "reduce time.dem_step_s, or raise bed.height_m where it left through the top");
     }
@@ -102,10 +108,14 @@ void bedFoam::Guards::checkOverlap(const Liggghts& dem)
     deepest_ = max(deepest_, deepest);
     if (deepest <= largestOverlap_) return;
     const vector place(own.place[0], own.place[1], own.place[2]);
-    stop
-    (
-        Finding(own.depth, text("particle ", label(own.particle), " at ", place, " m and ", own.other.c_str(),
-            " overlap by ", own.depth, " diameters, above contact.largest_overlap_1 (", largestOverlap_, ")")),
+    stop(
+        Finding(
+            own.depth,
+            text(
+                "particle ", label(own.particle), " at ", place, " m and ", own.other.c_str(), " overlap by ",
+                own.depth, " diameters, above contact.largest_overlap_1 (", largestOverlap_, ")"
+            )
+        ),
         "reduce time.dem_step_s, or raise contact.young_modulus_Pa with a step that fits it"
     );
 }
@@ -122,21 +132,29 @@ void bedFoam::Guards::checkVoidage(const DemCoupling& particles) const
     if (!stopAtClip_ || particles.clipped() == 0) return;
     const auto& least = particles.leastVoidage();
     const vector place = least.second < 0 ? vector::zero : mesh_.C()[least.second];
-    stop
-    (
-        Finding(-least.first, text("voidage ", least.first, " in the gas cell at ", place, " m, below what a bed can have (",
-            particles.clipped(), " cells)")),
+    stop(
+        Finding(
+            -least.first,
+            text(
+                "voidage ", least.first, " in the gas cell at ", place, " m, below what a bed can have (",
+                particles.clipped(), " cells)"
+            )
+        ),
         "check bed.thickness_m, or take a larger gas.cell_size_m or gas.smoothing_diameters_1;"
         " gas.voidage_clip: count goes on with a raised voidage"
     );
 }
 
-void bedFoam::Guards::checkPressure(const SolverPerformance<scalar>& solve, const fvScalarMatrix& equation) const
+void bedFoam::Guards::checkPressure(
+    const SolverPerformance<scalar>& solve, const fvScalarMatrix& equation
+) const
 {
     if (solve.converged()) return;
     Finding worst(worstCell(mag(equation.residual()), "largest residual"));
-    worst.second() = text("the pressure is not solved after ", solve.nIterations(), " iterations (residual ",
-        solve.initialResidual(), " before, ", solve.finalResidual(), " after), ", worst.second().c_str());
+    worst.second() = text(
+        "the pressure is not solved after ", solve.nIterations(), " iterations (residual ",
+        solve.initialResidual(), " before, ", solve.finalResidual(), " after), ", worst.second().c_str()
+    );
     stop(worst, "reduce time.gas_step_s");
 }
 
@@ -144,12 +162,11 @@ void bedFoam::Guards::checkFinite(scalar pressureDrop, scalar kineticEnergy, con
 {
     if (std::isfinite(pressureDrop + kineticEnergy)) return;
     Finding worst(worstCell(mag(U.primitiveField()), "fastest gas [m/s]"));
-    worst.second() = text("the run has diverged (pressure drop ", pressureDrop, " Pa, kinetic energy ", kineticEnergy,
-        " J), ", worst.second().c_str());
+    worst.second() = text(
+        "the run has diverged (pressure drop ", pressureDrop, " Pa, kinetic energy ", kineticEnergy, " J), ",
+        worst.second().c_str()
+    );
     stop(worst, "reduce time.gas_step_s or time.dem_step_s");
 }
 
-scalar bedFoam::Guards::takeDeepestOverlap()
-{
-    return std::exchange(deepest_, 0);
-}
+scalar bedFoam::Guards::takeDeepestOverlap() { return std::exchange(deepest_, 0); }

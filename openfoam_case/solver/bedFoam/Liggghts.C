@@ -17,8 +17,7 @@
 #include "timer.h"
 #include "update.h"
 
-bedFoam::Liggghts::Liggghts
-(
+bedFoam::Liggghts::Liggghts(
     const std::string& deck, const std::vector<std::pair<std::string, std::string>>& variables
 )
 {
@@ -37,8 +36,7 @@ bedFoam::Liggghts::Liggghts
 
     const auto property = [this](const char* name, bool needed = true)
     {
-        return static_cast<LAMMPS_NS::FixPropertyAtom*>
-        (
+        return static_cast<LAMMPS_NS::FixPropertyAtom*>(
             dem_->modify->find_fix_property(name, "property/atom", "vector", 0, 0, "bedFoam", needed)
         );
     };
@@ -69,45 +67,21 @@ void bedFoam::Liggghts::start(long steps)
     dem_->timer->barrier_start(TIME_LOOP);
 }
 
-void bedFoam::Liggghts::advance(int steps)
-{
-    dem_->update->integrate->run(steps);
-}
+void bedFoam::Liggghts::advance(int steps) { dem_->update->integrate->run(steps); }
 
-void bedFoam::Liggghts::command(const std::string& line)
-{
-    dem_->input->one(line.c_str());
-}
+void bedFoam::Liggghts::command(const std::string& line) { dem_->input->one(line.c_str()); }
 
-int bedFoam::Liggghts::count() const
-{
-    return dem_->atom->nlocal;
-}
+int bedFoam::Liggghts::count() const { return dem_->atom->nlocal; }
 
-long bedFoam::Liggghts::id(int particle) const
-{
-    return dem_->atom->tag[particle];
-}
+long bedFoam::Liggghts::id(int particle) const { return dem_->atom->tag[particle]; }
 
-double** bedFoam::Liggghts::position() const
-{
-    return dem_->atom->x;
-}
+double** bedFoam::Liggghts::position() const { return dem_->atom->x; }
 
-double** bedFoam::Liggghts::velocity() const
-{
-    return dem_->atom->v;
-}
+double** bedFoam::Liggghts::velocity() const { return dem_->atom->v; }
 
-double** bedFoam::Liggghts::force() const
-{
-    return force_->array_atom;
-}
+double** bedFoam::Liggghts::force() const { return force_->array_atom; }
 
-double** bedFoam::Liggghts::draggedVelocity() const
-{
-    return dragged_->array_atom;
-}
+double** bedFoam::Liggghts::draggedVelocity() const { return dragged_->array_atom; }
 
 double bedFoam::Liggghts::floorForce() const
 {
@@ -142,11 +116,16 @@ void bedFoam::Liggghts::deepestPair(Overlap& deepest) const
             const double dx = x[i][0] - x[j][0], dy = x[i][1] - x[j][1], dz = x[i][2] - x[j][2];
             const double reach = radius[i] + radius[j];
             // The root only for a pair that is deeper than the deepest so far
-            const double apart = reach*(1 - deepest.depth);
-            const double squared = dx*dx + dy*dy + dz*dz;
-            if (squared < apart*apart)
+            const double apart = reach * (1 - deepest.depth);
+            const double squared = dx * dx + dy * dy + dz * dz;
+            if (squared < apart * apart)
             {
-                deepest = {1 - std::sqrt(squared)/reach, {x[i][0], x[i][1], x[i][2]}, id(i), "particle " + std::to_string(id(j))};
+                deepest = {
+                    1 - std::sqrt(squared) / reach,
+                    {x[i][0], x[i][1], x[i][2]},
+                    id(i),
+                    "particle " + std::to_string(id(j))
+                };
             }
         }
     }
@@ -158,8 +137,9 @@ void bedFoam::Liggghts::deepestAt(const Plane& wall, Overlap& deepest) const
     const double* radius = dem_->atom->radius;
     for (int i = 0; i < count(); ++i)
     {
-        const double depth = 0.5 - wall.inward*(x[i][wall.axis] - wall.position)/(2*radius[i]);
-        if (depth > deepest.depth) deepest = {depth, {x[i][0], x[i][1], x[i][2]}, id(i), "the wall " + wall.name};
+        const double depth = 0.5 - wall.inward * (x[i][wall.axis] - wall.position) / (2 * radius[i]);
+        if (depth > deepest.depth)
+            deepest = {depth, {x[i][0], x[i][1], x[i][2]}, id(i), "the wall " + wall.name};
     }
 }
 

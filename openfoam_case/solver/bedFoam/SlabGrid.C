@@ -8,21 +8,20 @@
 namespace
 {
 
-constexpr double largestDiffusion = 0.25;   // of one pass: below 1/2 the pass is stable, at 1/4 it has no negative mode
+// Of one pass: below 1/2 the pass is stable, at 1/4 it has no negative mode
+constexpr double largestDiffusion = 0.25;
 
 }
 
-bedFoam::SlabGrid::SlabGrid
-(
-    const std::array<int, 3>& cells, const std::array<double, 3>& origin,
-    const std::array<double, 3>& size, int rank, int ranks
+bedFoam::SlabGrid::SlabGrid(
+    const std::array<int, 3>& cells, const std::array<double, 3>& origin, const std::array<double, 3>& size,
+    int rank, int ranks
 )
-:
-    cells_(cells),
-    origin_(origin),
-    size_(size),
-    lowerRank_(rank > 0 ? rank - 1 : MPI_PROC_NULL),
-    upperRank_(rank < ranks - 1 ? rank + 1 : MPI_PROC_NULL)
+    : cells_(cells),
+      origin_(origin),
+      size_(size),
+      lowerRank_(rank > 0 ? rank - 1 : MPI_PROC_NULL),
+      upperRank_(rank < ranks - 1 ? rank + 1 : MPI_PROC_NULL)
 {}
 
 void bedFoam::SlabGrid::setSmoothingLength(double length)
@@ -32,11 +31,12 @@ void bedFoam::SlabGrid::setSmoothingLength(double length)
     double mostPasses = 0;
     for (int d = 0; d < 3; ++d)
     {
-        missing[d] = cells_[d] > 1 ? std::max(0.0, length*length/12/(size_[d]*size_[d]) - 1.0/6) : 0;
-        mostPasses = std::max(mostPasses, missing[d]/(2*largestDiffusion));
+        missing[d] =
+            cells_[d] > 1 ? std::max(0.0, length * length / 12 / (size_[d] * size_[d]) - 1.0 / 6) : 0;
+        mostPasses = std::max(mostPasses, missing[d] / (2 * largestDiffusion));
     }
     passes_ = static_cast<int>(std::ceil(mostPasses));
-    for (int d = 0; d < 3; ++d) diffusion_[d] = passes_ ? missing[d]/(2*passes_) : 0;
+    for (int d = 0; d < 3; ++d) diffusion_[d] = passes_ ? missing[d] / (2 * passes_) : 0;
 }
 
 bedFoam::Stencil bedFoam::SlabGrid::locate(const double* position) const
@@ -48,7 +48,7 @@ bedFoam::Stencil bedFoam::SlabGrid::locate(const double* position) const
         const bool ghosts = d == 0;
         const int first = ghosts && lowerRank_ != MPI_PROC_NULL ? -1 : 0;
         const int last = ghosts && upperRank_ != MPI_PROC_NULL ? cells_[d] : cells_[d] - 1;
-        const double offset = (position[d] - origin_[d])/size_[d] - 0.5;
+        const double offset = (position[d] - origin_[d]) / size_[d] - 0.5;
         const int below = static_cast<int>(std::floor(offset));
         // Beyond the outermost centre both ends fall on that cell: nothing leaves through a wall
         lower[d] = std::min(std::max(below, first), last);
@@ -59,13 +59,17 @@ bedFoam::Stencil bedFoam::SlabGrid::locate(const double* position) const
     Stencil stencil;
     stencil.count = 0;
     const int layers = cells_[1] == 1 ? 1 : 2;
-    for (int z = 0; z < 2; ++z) for (int y = 0; y < layers; ++y) for (int x = 0; x < 2; ++x)
-    {
-        const double inY = layers == 1 ? 1 : y ? share[1] : 1 - share[1];
-        stencil.cell[stencil.count] = index(x ? upper[0] : lower[0], y ? upper[1] : lower[1], z ? upper[2] : lower[2]);
-        stencil.weight[stencil.count] = (x ? share[0] : 1 - share[0])*inY*(z ? share[2] : 1 - share[2]);
-        ++stencil.count;
-    }
+    for (int z = 0; z < 2; ++z)
+        for (int y = 0; y < layers; ++y)
+            for (int x = 0; x < 2; ++x)
+            {
+                const double inY = layers == 1 ? 1 : y ? share[1] : 1 - share[1];
+                stencil.cell[stencil.count] =
+                    index(x ? upper[0] : lower[0], y ? upper[1] : lower[1], z ? upper[2] : lower[2]);
+                stencil.weight[stencil.count] =
+                    (x ? share[0] : 1 - share[0]) * inY * (z ? share[2] : 1 - share[2]);
+                ++stencil.count;
+            }
     return stencil;
 }
 
@@ -73,17 +77,21 @@ void bedFoam::SlabGrid::exchange(double* toLower, double* toUpper, int count) co
 {
     // To a wall nothing is sent, and from there nothing comes: the layer stays as it was
     const std::vector<double> down(toLower, toLower + count), up(toUpper, toUpper + count);
-    MPI_Sendrecv(down.data(), count, MPI_DOUBLE, lowerRank_, 1, toUpper, count, MPI_DOUBLE, upperRank_, 1,
-        MPI_COMM_WORLD, MPI_STATUS_IGNORE);
-    MPI_Sendrecv(up.data(), count, MPI_DOUBLE, upperRank_, 2, toLower, count, MPI_DOUBLE, lowerRank_, 2,
-        MPI_COMM_WORLD, MPI_STATUS_IGNORE);
+    MPI_Sendrecv(
+        down.data(), count, MPI_DOUBLE, lowerRank_, 1, toUpper, count, MPI_DOUBLE, upperRank_, 1,
+        MPI_COMM_WORLD, MPI_STATUS_IGNORE
+    );
+    MPI_Sendrecv(
+        up.data(), count, MPI_DOUBLE, upperRank_, 2, toLower, count, MPI_DOUBLE, lowerRank_, 2,
+        MPI_COMM_WORLD, MPI_STATUS_IGNORE
+    );
 }
 
 std::array<double, 3> bedFoam::SlabGrid::centre(int cell) const
 {
-    const int row = cell/cells_[0];
-    const std::array<int, 3> at{cell % cells_[0], row % cells_[1], row/cells_[1]};
+    const int row = cell / cells_[0];
+    const std::array<int, 3> at{cell % cells_[0], row % cells_[1], row / cells_[1]};
     std::array<double, 3> position;
-    for (int d = 0; d < 3; ++d) position[d] = origin_[d] + (at[d] + 0.5)*size_[d];
+    for (int d = 0; d < 3; ++d) position[d] = origin_[d] + (at[d] + 0.5) * size_[d];
     return position;
 }

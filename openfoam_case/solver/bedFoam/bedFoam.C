@@ -34,27 +34,26 @@ int main(int argc, char* argv[])
     if (!Pstream::parRun()) MPI_Init(&argc, &argv);
 
     {
-        #include "createTime.H"
-        #include "createMesh.H"
+#include "createTime.H"
+#include "createMesh.H"
 
         const auto read = [](const fileName& file)
         {
             if (!isFile(file)) FatalErrorInFunction << "there is no " << file << exit(FatalError);
             return dictionary(IFstream(file)());
         };
-        const dictionary parameters(read(runTime.globalPath()/"caseParameters"));
-        const dictionary segment(read(runTime.globalPath()/"segmentParameters"));
-        const dictionary gas(read(runTime.globalPath()/"constant"/"gasProperties"));
-        const dimensionedScalar viscosity
-        (
-            "viscosity", dimViscosity, gas.get<scalar>("viscosity")/gas.get<scalar>("density")
+        const dictionary parameters(read(runTime.globalPath() / "caseParameters"));
+        const dictionary segment(read(runTime.globalPath() / "segmentParameters"));
+        const dictionary gas(read(runTime.globalPath() / "constant" / "gasProperties"));
+        const dimensionedScalar viscosity(
+            "viscosity", dimViscosity, gas.get<scalar>("viscosity") / gas.get<scalar>("density")
         );
         const scalar gasDensity = gas.get<scalar>("density");
         const auto superficialVelocity = Function1<scalar>::New("superficialVelocity", gas);
         const label rowEvery = segment.get<label>("row_every");
 
         pisoControl piso(mesh);
-        #include "createFields.H"
+#include "createFields.H"
 
         bedFoam::DemCoupling particles(mesh, parameters, gas, segment);
         particles.deposit(U, voidage, dragRate, dragSource);
@@ -74,13 +73,13 @@ int main(int argc, char* argv[])
             guards.checkVoidage(particles);
             report.charge(bedFoam::RunReport::exchange);
 
-            #include "setInlet.H"
+#include "setInlet.H"
             const surfaceScalarField voidagef("voidagef", fvc::interpolate(voidage));
             {
-                #include "UEqn.H"
+#include "UEqn.H"
                 while (piso.correct())
                 {
-                    #include "pEqn.H"
+#include "pEqn.H"
                 }
             }
             report.charge(bedFoam::RunReport::gas);
@@ -88,11 +87,11 @@ int main(int argc, char* argv[])
             particles.applyForces(U, gradP, dragRate, dragSource);
             report.charge(bedFoam::RunReport::exchange);
 
-            #include "reportStep.H"
+#include "reportStep.H"
         }
 
         runTime.writeNow();
-        particles.writeRestart(segment.get<fileName>("output")/"particles.restart");
+        particles.writeRestart(segment.get<fileName>("output") / "particles.restart");
         report.finish();
     }
 
