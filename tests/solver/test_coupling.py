@@ -9,6 +9,7 @@ import numpy as np
 import pandas as pd
 import pytest
 
+from bedchain.dem import gas_case
 from bedchain.dem.segments import input_stamp
 from bedchain.errors import UserError
 from bedchain.trajectory.dumps import read_dump
@@ -90,6 +91,19 @@ def test_slabs_that_do_not_fit_are_refused(make_bed):
         UserError, match=r"4 gas cells along x cannot be cut into 3 equal slabs.*gas.cell_size_m"
     ):
         run_dem(folder, 0.004, 0.004, 3)
+
+
+def test_a_mesh_without_the_inlet_is_refused(make_bed, tmp_path, monkeypatch):
+    case = tmp_path / "openfoam_case"
+    shutil.copytree(gas_case.GAS_CASE, case)
+    for name in ("system/blockMeshDict", "0.orig/U", "0.orig/p"):
+        text, found = re.subn(r"\binlet$|\binlet(?= +\{)", "floor", (case / name).read_text(), flags=re.M)
+        assert found == 1
+        (case / name).write_text(text)
+    monkeypatch.setattr(gas_case, "GAS_CASE", case)
+    folder = make_bed("bed")
+    with pytest.raises(UserError, match=r"has no patch inlet, only .*floor.*system/blockMeshDict"):
+        run_dem(folder, 0.004, 0.004, 1)
 
 
 def test_an_unknown_drag_law_names_those_that_exist(make_bed):

@@ -11,7 +11,7 @@ from made import ROOT
 
 ERRORS = [
     ("dragLaws.C", "150 * solids", "130 * solids", "uniform_bed", "lattice at 0.2 m/s, gidaspow"),
-    ("pEqn.H", "== fvc::ddt(voidage) + ", "== ", "suspension", "sinking speed of a uniform suspension"),
+    ("pEqn.C", "== fvc::ddt(voidage) + ", "== ", "suspension", "sinking speed of a uniform suspension"),
 ]
 
 

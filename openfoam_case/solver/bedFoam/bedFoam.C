@@ -12,14 +12,95 @@
 
 #include <mpi.h>
 
-#include "Function1.H"
 #include "IFstream.H"
 #include "fvCFD.H"
 #include "pisoControl.H"
 
+#include "BedSeries.H"
 #include "DemCoupling.H"
 #include "Guards.H"
+#include "Inlet.H"
 #include "RunReport.H"
+#include "fields.H"
+#include "gasEquations.H"
+
+namespace
+{
+
+dictionary readDictionary(const fileName& file)
+{
+    if (!isFile(file)) FatalErrorInFunction << "there is no " << file << exit(FatalError);
+    return dictionary(IFstream(file)());
+}
+
+//- Run the segment of a case, from its start time to its end time
+void runSegment(const argList& args)
+{
+    Time runTime(Time::controlDictName, args);
+    fvMesh mesh(IOobject(fvMesh::defaultRegion, runTime.timeName(), runTime, IOobject::MUST_READ));
+    const dictionary parameters = readDictionary(runTime.globalPath() / "caseParameters");
+    const dictionary segment = readDictionary(runTime.globalPath() / "segmentParameters");
+    const dictionary properties = readDictionary(runTime.globalPath() / "constant" / "gasProperties");
+    const dimensionedScalar viscosity(
+        "viscosity", dimViscosity, properties.get<scalar>("viscosity") / properties.get<scalar>("density")
+    );
+    const label rowEvery = segment.get<label>("row_every");
+
+    pisoControl piso(mesh);
+    const bedFoam::Inlet inlet(mesh, properties);
+    bedFoam::GasFields gas(mesh);
+    bedFoam::SolidsFields solids(mesh);
+
+    bedFoam::DemCoupling particles(mesh, parameters, properties, segment);
+    particles.deposit(gas.U, solids.voidage, solids.dragRate, solids.dragSource);
+    solids.voidage.oldTime();
+    bedFoam::Guards guards(mesh, parameters, properties, particles.dem());
+    guards.checkParticles(particles.dem());
+    guards.checkVoidage(particles);
+    bedFoam::RunReport report(runTime);
+    bedFoam::BedSeries series(runTime);
+
+    while (runTime.loop())
+    {
+        particles.advance();
+        report.charge(bedFoam::RunReport::dem);
+
+        guards.checkParticles(particles.dem());
+        particles.deposit(gas.U, solids.voidage, solids.dragRate, solids.dragSource);
+        guards.checkVoidage(particles);
+        report.charge(bedFoam::RunReport::exchange);
+
+        inlet.setVelocity(solids.voidage, gas.U, gas.phi);
+        const surfaceScalarField voidagef("voidagef", fvc::interpolate(solids.voidage));
+        const tmp<fvVectorMatrix> UEqn = bedFoam::solveMomentum(solids, voidagef, viscosity, piso, gas);
+        while (piso.correct()) bedFoam::solvePressure(UEqn(), solids, voidagef, guards, piso, gas);
+        report.charge(bedFoam::RunReport::gas);
+
+        particles.applyForces(gas.U, gas.gradP, solids.dragRate, solids.dragSource);
+        report.charge(bedFoam::RunReport::exchange);
+
+        const auto bed = particles.bed();
+        const scalar pressureDrop = inlet.pressureDrop(gas.p);
+        guards.checkFinite(pressureDrop, bed.kineticEnergy, gas.U);
+        series.carry(pressureDrop, particles.onGas(), bed.onFloor, bed.onSides);
+        if (runTime.timeIndex() % rowEvery == 0)
+        {
+            series.row(
+                {inlet.superficialVelocity(), bed.meanHeight, bed.kineticEnergy, bed.number,
+                 gMin(solids.voidage.primitiveField()), particles.clipped(),
+                 bedFoam::volumeImbalance(solids.voidage, voidagef, gas.phi), particles.exchangeError(),
+                 guards.takeDeepestOverlap()}
+            );
+        }
+        report.progress();
+    }
+
+    runTime.writeNow();
+    particles.writeRestart(segment.get<fileName>("output") / "particles.restart");
+    report.finish();
+}
+
+}
 
 int main(int argc, char* argv[])
 {
@@ -32,69 +113,7 @@ int main(int argc, char* argv[])
 
     // OpenFOAM starts MPI only in parallel, LIGGGHTS needs it always
     if (!Pstream::parRun()) MPI_Init(&argc, &argv);
-
-    {
-#include "createTime.H"
-#include "createMesh.H"
-
-        const auto read = [](const fileName& file)
-        {
-            if (!isFile(file)) FatalErrorInFunction << "there is no " << file << exit(FatalError);
-            return dictionary(IFstream(file)());
-        };
-        const dictionary parameters(read(runTime.globalPath() / "caseParameters"));
-        const dictionary segment(read(runTime.globalPath() / "segmentParameters"));
-        const dictionary gas(read(runTime.globalPath() / "constant" / "gasProperties"));
-        const dimensionedScalar viscosity(
-            "viscosity", dimViscosity, gas.get<scalar>("viscosity") / gas.get<scalar>("density")
-        );
-        const scalar gasDensity = gas.get<scalar>("density");
-        const auto superficialVelocity = Function1<scalar>::New("superficialVelocity", gas);
-        const label rowEvery = segment.get<label>("row_every");
-
-        pisoControl piso(mesh);
-#include "createFields.H"
-
-        bedFoam::DemCoupling particles(mesh, parameters, gas, segment);
-        particles.deposit(U, voidage, dragRate, dragSource);
-        voidage.oldTime();
-        bedFoam::Guards guards(mesh, parameters, gas, particles.dem());
-        guards.checkParticles(particles.dem());
-        guards.checkVoidage(particles);
-        bedFoam::RunReport report(runTime);
-
-        while (runTime.loop())
-        {
-            particles.advance();
-            report.charge(bedFoam::RunReport::dem);
-
-            guards.checkParticles(particles.dem());
-            particles.deposit(U, voidage, dragRate, dragSource);
-            guards.checkVoidage(particles);
-            report.charge(bedFoam::RunReport::exchange);
-
-#include "setInlet.H"
-            const surfaceScalarField voidagef("voidagef", fvc::interpolate(voidage));
-            {
-#include "UEqn.H"
-                while (piso.correct())
-                {
-#include "pEqn.H"
-                }
-            }
-            report.charge(bedFoam::RunReport::gas);
-
-            particles.applyForces(U, gradP, dragRate, dragSource);
-            report.charge(bedFoam::RunReport::exchange);
-
-#include "reportStep.H"
-        }
-
-        runTime.writeNow();
-        particles.writeRestart(segment.get<fileName>("output") / "particles.restart");
-        report.finish();
-    }
-
+    runSegment(args);
     if (!Pstream::parRun()) MPI_Finalize();
     return 0;
 }
