@@ -153,8 +153,8 @@ void bedFoam::DemCoupling::depositDrag(
                                     { value = {{U[cell].x(), U[cell].y(), U[cell].z(), voidage[cell]}}; });
     grid_.prepareSample<4>(gas);
 
-    double** velocity = dem_.velocity();
-    double** dragged = dem_.draggedVelocity();
+    const double* const* velocity = dem_.velocity();
+    const double* const* dragged = dem_.draggedVelocity();
     SlabField<4> drag = grid_.field<4>();
     for (size_t i = 0; i < particles_.size(); ++i)
     {
@@ -214,9 +214,9 @@ void bedFoam::DemCoupling::applyForces(
     );
     grid_.prepareSample<6>(gas);
 
-    double** velocity = dem_.velocity();
-    double** force = dem_.force();
-    double** dragged = dem_.draggedVelocity();
+    const double* const* velocity = dem_.velocity();
+    double* const* force = dem_.force();
+    double* const* dragged = dem_.draggedVelocity();
     vector dragOnParticles = Zero;
     scalar dragSize = 0, lift = 0;
     for (size_t i = 0; i < particles_.size(); ++i)

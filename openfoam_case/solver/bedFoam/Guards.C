@@ -169,4 +169,9 @@ void bedFoam::Guards::checkFinite(scalar pressureDrop, scalar kineticEnergy, con
     stop(worst, "reduce time.gas_step_s or time.dem_step_s");
 }
 
-scalar bedFoam::Guards::takeDeepestOverlap() { return std::exchange(deepest_, 0); }
+scalar bedFoam::Guards::takeDeepestOverlap()
+{
+    const scalar deepest = deepest_;
+    deepest_ = 0;
+    return deepest;
+}

@@ -6,6 +6,7 @@
 
 #include "atom.h"
 #include "domain.h"
+#include "error.h"
 #include "fix_property_atom.h"
 #include "force.h"
 #include "input.h"
@@ -62,6 +63,10 @@ void bedFoam::Liggghts::start(long steps)
     update.firststep = update.beginstep = update.ntimestep;
     update.laststep = update.endstep = update.firststep + steps;
     dem_->init();
+    if (!dem_->force->pair || !dem_->force->pair->list)
+    {
+        dem_->error->all(FLERR, "the deck has no pair_style: it must include liggghts_inputs/include/bed.in");
+    }
     update.integrate->setup();
     dem_->timer->init();
     dem_->timer->barrier_start(TIME_LOOP);
@@ -75,13 +80,15 @@ int bedFoam::Liggghts::count() const { return dem_->atom->nlocal; }
 
 long bedFoam::Liggghts::id(int particle) const { return dem_->atom->tag[particle]; }
 
-double** bedFoam::Liggghts::position() const { return dem_->atom->x; }
+const double* const* bedFoam::Liggghts::position() const { return dem_->atom->x; }
 
-double** bedFoam::Liggghts::velocity() const { return dem_->atom->v; }
+const double* const* bedFoam::Liggghts::velocity() const { return dem_->atom->v; }
 
-double** bedFoam::Liggghts::force() const { return force_->array_atom; }
+double* const* bedFoam::Liggghts::force() { return force_->array_atom; }
 
-double** bedFoam::Liggghts::draggedVelocity() const { return dragged_->array_atom; }
+const double* const* bedFoam::Liggghts::draggedVelocity() const { return dragged_->array_atom; }
+
+double* const* bedFoam::Liggghts::draggedVelocity() { return dragged_->array_atom; }
 
 double bedFoam::Liggghts::floorForce() const
 {

@@ -73,17 +73,17 @@ bedFoam::Stencil bedFoam::SlabGrid::locate(const double* position) const
     return stencil;
 }
 
-void bedFoam::SlabGrid::exchange(double* toLower, double* toUpper, int count) const
+void bedFoam::SlabGrid::swapLayers(double* lower, double* upper, int count) const
 {
     // To a wall nothing is sent, and from there nothing comes: the layer stays as it was
-    const std::vector<double> down(toLower, toLower + count), up(toUpper, toUpper + count);
+    const std::vector<double> down(lower, lower + count), up(upper, upper + count);
     MPI_Sendrecv(
-        down.data(), count, MPI_DOUBLE, lowerRank_, 1, toUpper, count, MPI_DOUBLE, upperRank_, 1,
+        down.data(), count, MPI_DOUBLE, lowerRank_, 1, upper, count, MPI_DOUBLE, upperRank_, 1,
         MPI_COMM_WORLD, MPI_STATUS_IGNORE
     );
     MPI_Sendrecv(
-        up.data(), count, MPI_DOUBLE, upperRank_, 2, toLower, count, MPI_DOUBLE, lowerRank_, 2,
-        MPI_COMM_WORLD, MPI_STATUS_IGNORE
+        up.data(), count, MPI_DOUBLE, upperRank_, 2, lower, count, MPI_DOUBLE, lowerRank_, 2, MPI_COMM_WORLD,
+        MPI_STATUS_IGNORE
     );
 }
 
