@@ -127,17 +127,16 @@ void bedFoam::Guards::checkParticles(const Liggghts& dem)
     checkNumber(dem);
 }
 
-void bedFoam::Guards::checkVoidage(const DemCoupling& particles) const
+void bedFoam::Guards::checkVoidage(const VoidageClips& clips) const
 {
-    if (!stopAtClip_ || particles.clipped() == 0) return;
-    const auto& least = particles.leastVoidage();
-    const vector place = least.second < 0 ? vector::zero : mesh_.C()[least.second];
+    if (!stopAtClip_ || clips.number == 0) return;
+    const vector place = clips.cell < 0 ? vector::zero : mesh_.C()[clips.cell];
     stop(
         Finding(
-            -least.first,
+            -clips.least,
             text(
-                "voidage ", least.first, " in the gas cell at ", place, " m, below what a bed can have (",
-                particles.clipped(), " cells)"
+                "voidage ", clips.least, " in the gas cell at ", place, " m, below what a bed can have (",
+                clips.number, " cells)"
             )
         ),
         "check bed.thickness_m, or take a larger gas.cell_size_m or gas.smoothing_diameters_1;"

@@ -52,11 +52,11 @@ void runSegment(const argList& args)
     bedFoam::SolidsFields solids(mesh);
 
     bedFoam::DemCoupling particles(mesh, parameters, properties, segment);
-    particles.deposit(gas.U, solids.voidage, solids.dragRate, solids.dragSource);
+    particles.deposit(gas.U, solids);
     solids.voidage.oldTime();
     bedFoam::Guards guards(mesh, parameters, properties, particles.dem());
     guards.checkParticles(particles.dem());
-    guards.checkVoidage(particles);
+    guards.checkVoidage(particles.clips());
     bedFoam::RunReport report(runTime);
     bedFoam::BedSeries series(runTime);
 
@@ -66,8 +66,8 @@ void runSegment(const argList& args)
         report.charge(bedFoam::RunReport::dem);
 
         guards.checkParticles(particles.dem());
-        particles.deposit(gas.U, solids.voidage, solids.dragRate, solids.dragSource);
-        guards.checkVoidage(particles);
+        particles.deposit(gas.U, solids);
+        guards.checkVoidage(particles.clips());
         report.charge(bedFoam::RunReport::exchange);
 
         inlet.setVelocity(solids.voidage, gas.U, gas.phi);
@@ -76,20 +76,20 @@ void runSegment(const argList& args)
         while (piso.correct()) bedFoam::solvePressure(UEqn(), solids, voidagef, guards, piso, gas);
         report.charge(bedFoam::RunReport::gas);
 
-        particles.applyForces(gas.U, gas.gradP, solids.dragRate, solids.dragSource);
+        particles.applyForces(gas, solids);
         report.charge(bedFoam::RunReport::exchange);
 
-        const auto bed = particles.bed();
+        const bedFoam::BedState bed = particles.bed();
         const scalar pressureDrop = inlet.pressureDrop(gas.p);
         guards.checkFinite(pressureDrop, bed.kineticEnergy, gas.U);
-        series.carry(pressureDrop, particles.onGas(), bed.onFloor, bed.onSides);
+        series.carry(pressureDrop, particles.forces().shareOnGas(), bed.onFloor, bed.onSides);
         if (runTime.timeIndex() % rowEvery == 0)
         {
             series.row(
                 {inlet.superficialVelocity(), bed.meanHeight, bed.kineticEnergy, bed.number,
-                 gMin(solids.voidage.primitiveField()), particles.clipped(),
-                 bedFoam::volumeImbalance(solids.voidage, voidagef, gas.phi), particles.exchangeError(),
-                 guards.takeDeepestOverlap()}
+                 gMin(solids.voidage.primitiveField()), particles.clips().number,
+                 bedFoam::volumeImbalance(solids.voidage, voidagef, gas.phi),
+                 particles.forces().dragImbalance(), guards.takeDeepestOverlap()}
             );
         }
         report.progress();
