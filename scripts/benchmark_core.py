@@ -2,10 +2,8 @@
 """Time and memory of the Markov core beside deeptime and a plain scipy call: a table for the README."""
 
 import argparse
-import csv
 import json
 import os
-import re
 import statistics
 import subprocess
 import sys
@@ -20,6 +18,7 @@ from typing import Any
 os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
 
 import numpy as np
+import pandas as pd
 from scipy import sparse
 
 from bedchain.chains import dynamic, propagate, registry, static
@@ -27,6 +26,8 @@ from bedchain.chains.counting import count_moves, count_pairs
 from bedchain.chains.estimators import transition_matrix
 from bedchain.chains.markov_chain import MarkovChain
 from bedchain.chains.tracer_chain import TracerChain
+from bedchain.files import write_csv
+from bedchain.meter import peak_memory_mb
 from bedchain.studies.cost.benchmark_table import machine, relative_rows, table
 from bedchain.trajectory import synthetic
 from bedchain.trajectory.frames import Frames
@@ -160,15 +161,6 @@ METHODS: dict[str, Callable[[np.ndarray, Grid], Callable[[], Any]]] = {
 }
 
 
-def peak_mb() -> float:
-    """Largest memory of this process so far [MB of 10^6 bytes].
-
-    Not `getrusage`: what it gives to a fresh process starts at the peak of the one that started it.
-    """
-    status = Path("/proc/self/status").read_text()
-    return int(re.search(r"VmHWM:\s*(\d+) kB", status)[1]) * 1024 / 1e6  # type: ignore[index]
-
-
 def measure(method: str, path: Path, cells: tuple[int, int], repeats: int) -> dict[str, float]:
     """Run one method in this process: once on a few frames to compile, then timed.
 
@@ -180,7 +172,7 @@ def measure(method: str, path: Path, cells: tuple[int, int], repeats: int) -> di
     """
     array, grid = np.load(path, mmap_mode="r"), grid_of(cells)
     METHODS[method](np.array(array[:24, ..., :1000]), grid)()
-    before = peak_mb()
+    before = peak_memory_mb()
     run = METHODS[method](array, grid)
     times, busy = [], []
     for _ in range(repeats):
@@ -193,8 +185,8 @@ def measure(method: str, path: Path, cells: tuple[int, int], repeats: int) -> di
     return {
         "median_s": statistics.median(times),
         "cpu_s": statistics.median(busy),
-        "peak_rss_mb": peak_mb(),
-        "own_rss_mb": peak_mb() - before,
+        "peak_rss_mb": peak_memory_mb(),
+        "own_rss_mb": peak_memory_mb() - before,
         "entries": entries,
     }
 
@@ -251,17 +243,6 @@ def run_task(task: Task, folder: Path) -> dict[str, Any]:
     return row
 
 
-def write_csv(rows: list[dict[str, Any]], path: Path) -> None:
-    """Write all numbers under a temporary name, then move them into place."""
-    path.parent.mkdir(parents=True, exist_ok=True)
-    temporary = path.with_name(f".{path.name}.{os.getpid()}.part")
-    with temporary.open("w", newline="") as stream:
-        writer = csv.DictWriter(stream, FIELDS, lineterminator="\n")
-        writer.writeheader()
-        writer.writerows(rows)
-    os.replace(temporary, path)
-
-
 def main() -> None:
     """Measure everything, or one method (as each fresh process does)."""
     parser = argparse.ArgumentParser(description=__doc__)
@@ -287,7 +268,7 @@ def main() -> None:
         for task in tasks(given.quick):
             print(f"{task.work}: {task.method}, {task.particles} particles ...", file=sys.stderr, flush=True)
             rows.append(run_task(task, Path(folder)))
-    write_csv(rows, given.output)
+    write_csv(pd.DataFrame(rows, columns=FIELDS), given.output)
     print(f"{machine()}; {rows[0]['steps']} steps; each line in a fresh process\n")
     print(table(rows) + "\n")
     print("\n".join(relative_rows(rows)))

@@ -14,7 +14,7 @@ import sys
 from pathlib import Path
 
 from bedchain.errors import report_user_errors
-from bedchain.files import complete, write_csv
+from bedchain.files import write_csv, write_text
 from bedchain.studies.peers.plots import draw
 from bedchain.studies.peers.study import all_peers, compare
 from bedchain.studies.peers.table import markdown, ratios, summary
@@ -43,8 +43,7 @@ def compare_peers(arguments: argparse.Namespace) -> bool:
     found = ratios(table)
     text = markdown(table, found)
     write_csv(found, arguments.folder / "ratios.csv")
-    with complete(arguments.folder / "peers.md") as temporary:
-        temporary.write_text(text + "\n", encoding="utf-8")
+    write_text(arguments.folder / "peers.md", text + "\n")
     draw(table, arguments.folder / "figures" / "peers")
     write_csv(table, arguments.folder / "peers.csv")
     print(f"\n{text}")

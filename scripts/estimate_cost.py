@@ -8,7 +8,7 @@ import pandas as pd
 
 from bedchain.case.presets import read_presets
 from bedchain.case.schema import Case
-from bedchain.files import complete, write_csv
+from bedchain.files import write_csv, write_text
 from bedchain.stage import LOG, stage
 from bedchain.studies.cost.actual import FACTOR_AIM, compared, happened, outside
 from bedchain.studies.cost.estimate import predicted
@@ -51,10 +51,7 @@ def estimate_cost(
     expected = predicted(case, speed, read_presets(presets).values(), archived)
     found = compared(expected, happened(case, bed, table.parent, benchmarks))
     write_csv(found.reset_index(), table)
-    with complete(text) as temporary:
-        temporary.write_text(
-            "\n".join([*header(case, speed.source, archived), lines(found), ""]), encoding="utf-8"
-        )
+    write_text(text, "\n".join([*header(case, speed.source, archived), lines(found), ""]))
     for name in outside(found):
         LOG.info(
             "%s came out %.2f times as long as estimated, more than %g",

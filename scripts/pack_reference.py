@@ -23,7 +23,7 @@ from bedchain.dem.gas_field import read_gas_field
 from bedchain.dem.repeats import kick_seed, repeat_folder
 from bedchain.dem.segments import read_parameters
 from bedchain.errors import UserError, report_user_errors
-from bedchain.files import complete, whole_folder, write_arrays, write_csv
+from bedchain.files import whole_folder, write_arrays, write_csv, write_text
 from bedchain.provenance import debian_packages, git_state, machine, python_packages
 from bedchain.trajectory import archive
 from bedchain.trajectory.frames import window
@@ -99,8 +99,7 @@ def pack_reference(case_file: Path, results: Path, target: Path, level_m: float 
                 for file in sorted(part.iterdir())
             },
         }
-        with complete(part / archive.PROVENANCE) as temporary:
-            temporary.write_text(json.dumps(provenance, indent=1) + "\n", encoding="utf-8")
+        write_text(part / archive.PROVENANCE, json.dumps(provenance, indent=1) + "\n")
     try:
         archive.check_archive(target, case, schema)
     except UserError:

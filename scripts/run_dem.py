@@ -14,7 +14,6 @@ velocity a little, and goes on to --end in results/<case>/repeats/<N>/, which ge
 
 import argparse
 import json
-import os
 from pathlib import Path
 
 import pandas as pd
@@ -46,7 +45,7 @@ from bedchain.dem.segments import (
     write_record,
 )
 from bedchain.errors import UserError, report_user_errors
-from bedchain.files import exclusive, whole_folder
+from bedchain.files import complete, exclusive, whole_folder, write_text
 from bedchain.trajectory.store import read_manifest
 
 SOLVER = Path("results/bin/bedFoam")
@@ -212,14 +211,10 @@ def write_results(run: Run, segments: list[Segment]) -> None:
     inside = "" if drum.turns(run.case) else "gas"
     files = [run.state / segment.folder / inside / drum.SERIES for segment in segments]
     series = pd.concat(map(pd.read_csv, files))
-    part = run.results / "bed_series.csv.part"
-    series[series["time_s"] <= run.end_step * float(str(found["dem_step_s"])) * (1 + 1e-9)].to_csv(
-        part, index=False
-    )
-    os.replace(part, run.results / "bed_series.csv")
-    part = run.results / "dem.json.part"
-    part.write_text(json.dumps(found, indent=1), encoding="utf-8")
-    os.replace(part, run.results / "dem.json")
+    last_s = run.end_step * float(str(found["dem_step_s"])) * (1 + 1e-9)
+    with complete(run.results / "bed_series.csv") as temporary:
+        series[series["time_s"] <= last_s].to_csv(temporary, index=False)
+    write_text(run.results / "dem.json", json.dumps(found, indent=1))
 
 
 def main() -> None:

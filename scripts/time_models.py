@@ -1,7 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """What each model costs, measured: results/<case>/timing.csv. The DEM's own time comes from its manifest."""
 
-import resource
 import time
 from collections.abc import Callable
 from pathlib import Path
@@ -15,6 +14,7 @@ from bedchain.chains.chain import Chain
 from bedchain.chains.estimators import transition_matrix
 from bedchain.errors import UserError
 from bedchain.files import write_csv
+from bedchain.meter import forget_peak, peak_memory_mb
 from bedchain.stage import LOG, stage
 from bedchain.trajectory.frames import Frames, lag_frames, whole_steps
 from bedchain.trajectory.grid import Grid
@@ -25,8 +25,6 @@ from bedchain.trajectory.store import read_manifest
 REPEATS = 15
 ENOUGH_S = 5.0
 FEWEST = 3
-MEGABYTE = 1024.0
-CLEAR_PEAK = "5"
 
 Row = dict[str, Any]
 
@@ -203,7 +201,8 @@ def measured(name: str, kernel: Callable[[], Any], work: float, work_unit: str) 
         One row of timing.csv; the peak is that of the whole process while the kernel ran.
     """
     kernel()
-    _forget_peak()
+    if not forget_peak():
+        LOG.info("the peak of the memory use cannot be reset here: it is that of the process so far")
     wall, cpu = [], []
     while len(wall) < FEWEST or (len(wall) < REPEATS and sum(wall) < ENOUGH_S):
         begin = time.perf_counter(), time.process_time()
@@ -212,7 +211,7 @@ def measured(name: str, kernel: Callable[[], Any], work: float, work_unit: str) 
         cpu.append(time.process_time() - begin[1])
     return {
         "stage": name, "wall_s": float(np.median(wall)), "cpu_s": float(np.median(cpu)),
-        "peak_rss_mb": _peak_mb(), "work": work, "work_unit": work_unit,
+        "peak_rss_mb": peak_memory_mb(), "work": work, "work_unit": work_unit,
     }  # fmt: skip
 
 
@@ -220,22 +219,6 @@ def in_memory(frames: Frames) -> Frames:
     """Frames copied out of their memory maps, so that no disk is timed."""
     rest = (frames.x_m, frames.z_m, np.ascontiguousarray(frames.cells), frames.vx_m_s, frames.vz_m_s)
     return Frames(np.array(frames.times_s), *(None if array is None else np.array(array) for array in rest))
-
-
-def _forget_peak() -> None:
-    """Let the kernel start its record of the highest memory use again, where it lets us."""
-    try:
-        Path("/proc/self/clear_refs").write_text(CLEAR_PEAK)
-    except OSError:
-        LOG.info("the peak of the memory use cannot be reset here: it is that of the process so far")
-
-
-def _peak_mb() -> float:
-    try:
-        status = Path("/proc/self/status").read_text()
-        return float(status.partition("VmHWM:")[2].split()[0]) / MEGABYTE
-    except (OSError, IndexError):
-        return resource.getrusage(resource.RUSAGE_SELF).ru_maxrss / MEGABYTE
 
 
 if "snakemake" in globals():

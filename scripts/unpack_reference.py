@@ -9,7 +9,7 @@ from pathlib import Path
 import numpy as np
 import pandas as pd
 
-from bedchain.files import complete, write_csv, write_npy_header
+from bedchain.files import complete, write_csv, write_npy_header, write_text
 from bedchain.stage import LOG, stage
 from bedchain.trajectory import archive
 from bedchain.trajectory.packed_positions import read_levels, with_velocities
@@ -52,8 +52,7 @@ def unpack_reference(
     described = trajectory_metadata(manifest, np.array(bed["ids"]), bed["width_m"], bed["height_m"])
     described["number"] = number
     for target, content in ((metadata, described), (dem, manifest)):
-        with complete(target) as temporary:
-            temporary.write_text(json.dumps(content))
+        write_text(target, json.dumps(content))
     for name, target in ((archive.SERIES, bed_series), (archive.GAS, gas)):
         with complete(target) as temporary:
             shutil.copyfile(folder / name, temporary)

@@ -5,7 +5,6 @@ usage: python scripts/write_parameters.py cases/short/case.yaml results/short
 """
 
 import argparse
-import os
 from pathlib import Path
 
 from bedchain.case.load import load_case
@@ -13,6 +12,7 @@ from bedchain.case.parameters import fluidization_line, liggghts_text, openfoam_
 from bedchain.case.schema import load_schema
 from bedchain.dem.disk import require_disk, run_bytes
 from bedchain.errors import report_user_errors
+from bedchain.files import write_text
 
 
 def write_parameters(case_file: Path, folder: Path) -> None:
@@ -44,9 +44,7 @@ def write_if_changed(file: Path, text: str) -> None:
     """Write `text` under a temporary name and move it to `file`, unless it is there already."""
     if file.exists() and file.read_text(encoding="utf-8") == text:
         return
-    temporary = file.with_name(file.name + ".part")
-    temporary.write_text(text, encoding="utf-8")
-    os.replace(temporary, file)
+    write_text(file, text)
 
 
 def main() -> None:

@@ -6,7 +6,7 @@ import json
 from pathlib import Path
 
 from bedchain.case.schema import Case
-from bedchain.files import complete
+from bedchain.files import write_text
 from bedchain.provenance import case_hash, debian_packages, git_state, machine, python_packages, rule_times
 from bedchain.stage import LOG, stage
 
@@ -34,8 +34,7 @@ def write_provenance(case: Case, inputs: dict[str, Path], benchmarks: Path, prov
         "times": rule_times(benchmarks),
         "sha256": {name: hashlib.sha256(file.read_bytes()).hexdigest() for name, file in inputs.items()},
     }
-    with complete(provenance) as temporary:
-        temporary.write_text(json.dumps(record, indent=2) + "\n", encoding="utf-8")
+    write_text(provenance, json.dumps(record, indent=2) + "\n")
     LOG.info("commit %s, %d jobs timed, in %s", record["git"]["commit"], len(record["times"]), provenance)
 
 

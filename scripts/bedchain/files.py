@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Named arrays in a file that appears whole or not at all."""
+"""Files and folders that appear complete or not at all, and the lock of a folder."""
 
 import fcntl
 import os
@@ -19,25 +19,17 @@ from bedchain.errors import DataError, UserError
 
 
 def write_arrays(path: Path | str, arrays: dict[str, NDArray[Any]]) -> None:
-    """Write arrays to an .npz under a temporary name, then move it into place.
+    """Write arrays to an .npz, complete or not at all.
 
     Parameters
     ----------
     path : path
-        File to make; its folder exists.
+        File to make.
     arrays : dict of str to array
         Anything but objects.
     """
-    target = Path(path)
-    temporary = target.with_name(f".{target.name}.{os.getpid()}.part")
-    try:
-        with temporary.open("wb") as stream:
-            np.savez(stream, allow_pickle=False, **arrays)
-            stream.flush()
-            os.fsync(stream.fileno())
-        os.replace(temporary, target)
-    finally:
-        temporary.unlink(missing_ok=True)
+    with complete(Path(path)) as temporary, temporary.open("wb") as stream:
+        np.savez(stream, allow_pickle=False, **arrays)
 
 
 def read_arrays(path: Path | str) -> dict[str, NDArray[Any]]:
@@ -103,9 +95,22 @@ def complete(target: Path) -> Iterator[Path]:
     temporary = target.with_name(f".{target.stem}.{os.getpid()}{target.suffix}")
     try:
         yield temporary
+        sync(temporary)
         temporary.replace(target)
     finally:
         temporary.unlink(missing_ok=True)
+
+
+def sync(file: Path) -> None:
+    """Have the system write a file's contents to the disk."""
+    with file.open("rb") as stream:
+        os.fsync(stream.fileno())
+
+
+def write_text(target: Path, text: str) -> None:
+    """Write a text in UTF-8, complete or not at all."""
+    with complete(target) as temporary:
+        temporary.write_text(text, encoding="utf-8")
 
 
 def write_npy_header(stream: IO[bytes], shape: tuple[int, ...], dtype: np.dtype) -> None:
@@ -169,6 +174,5 @@ def whole_folder(target: Path) -> Iterator[Path]:
     yield part
     for file in part.rglob("*"):
         if file.is_file():
-            with file.open("rb") as stream:
-                os.fsync(stream.fileno())
+            sync(file)
     os.replace(part, target)

@@ -1,5 +1,4 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-import csv
 
 import numpy as np
 import pytest
@@ -69,9 +68,7 @@ def test_a_task_runs_in_a_fresh_process_and_becomes_a_row(tmp_path):
     )
     row = benchmark_core.run_task(task, tmp_path)
     assert (row["met"], row["target"], row["repeats"]) == ("no", "<= 1e-09 s and <= 1e+09 MB", 2)
-    benchmark_core.write_csv([row], tmp_path / "results" / "table.csv")
-    with (tmp_path / "results" / "table.csv").open() as stream:
-        assert next(csv.DictReader(stream))["method"] == "bedchain"
+    assert set(row) == set(benchmark_core.FIELDS)
     assert "| 300 | 9 x 35 |" in benchmark_core.table([row]).splitlines()[2]
 
 

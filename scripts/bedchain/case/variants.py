@@ -11,7 +11,7 @@ import yaml
 from bedchain.case.load import load_case
 from bedchain.case.schema import Case
 from bedchain.case.strict_yaml import read_yaml
-from bedchain.files import complete
+from bedchain.files import write_text
 
 
 @dataclass(frozen=True)
@@ -57,6 +57,5 @@ def write_variant(case_file: Path, variant: Variant, folder: Path) -> Case:
         content[section] = content.get(section, {}) | {name: value} if name else value
     folder.mkdir(parents=True, exist_ok=True)
     file = folder / "case.yaml"
-    with complete(file) as temporary:
-        temporary.write_text(yaml.safe_dump(content, sort_keys=False), encoding="utf-8")
+    write_text(file, yaml.safe_dump(content, sort_keys=False))
     return load_case(file)

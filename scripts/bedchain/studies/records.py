@@ -8,7 +8,7 @@ from collections.abc import Callable, Sequence
 from pathlib import Path
 from typing import TypeVar
 
-from bedchain.files import complete
+from bedchain.files import write_text
 
 Made = TypeVar("Made")
 
@@ -57,8 +57,7 @@ def remembered(record: Path, make: Callable[[], Made]) -> Made:
         found: Made = json.loads(record.read_text(encoding="utf-8"))
         return found
     made = make()
-    with complete(record) as temporary:
-        temporary.write_text(json.dumps(made, indent=1), encoding="utf-8")
+    write_text(record, json.dumps(made, indent=1))
     return made
 
 

@@ -12,7 +12,7 @@ import numpy as np
 from tqdm import tqdm
 
 from bedchain.errors import UserError
-from bedchain.files import complete, write_npy_header
+from bedchain.files import complete, write_npy_header, write_text
 from bedchain.trajectory.dumps import frame_of, read_dump
 
 LOG = logging.getLogger(__name__)
@@ -112,8 +112,7 @@ def write_trajectory(
             stored = [frame[columns.index(name)] if name in columns else nothing for name in STORED]
             stream.write(np.array(stored, np.float32).tobytes())
     assert ids is not None
-    with complete(metadata) as temporary:
-        temporary.write_text(json.dumps(trajectory_metadata(manifest, ids, width_m, height_m)))
+    write_text(metadata, json.dumps(trajectory_metadata(manifest, ids, width_m, height_m)))
     return manifest
 
 

@@ -14,7 +14,7 @@ import yaml
 from numpy.typing import NDArray
 
 from bedchain.errors import UserError
-from bedchain.files import complete
+from bedchain.files import write_text
 from bedchain.studies.pareto import pareto_front
 from bedchain.studies.tradeoff.chain_settings import CELL_SIZES_M, FACTORIAL, ORDER, Own
 
@@ -90,8 +90,7 @@ def write_presets(
     path : Path
     """
     presets = {name: _preset(table.loc[row], own, measured_on) for name, row in chosen.items()}
-    with complete(path) as temporary:
-        temporary.write_text(f"{HEADER}{yaml.safe_dump(presets, sort_keys=False)}", encoding="utf-8")
+    write_text(path, f"{HEADER}{yaml.safe_dump(presets, sort_keys=False)}")
 
 
 def nominal_cell(columns: int, rows: int, own: Own) -> float:

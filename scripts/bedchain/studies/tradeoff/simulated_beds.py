@@ -2,7 +2,6 @@
 """Simulate variants of a bed, some side by side, and measure cost and errors of each."""
 
 import logging
-import re
 import threading
 import time
 from collections.abc import Callable, Sequence
@@ -15,6 +14,8 @@ from bedchain.case.variants import Variant
 from bedchain.dem.series import read_series
 from bedchain.dem.variant_run import simulate
 from bedchain.errors import UserError
+from bedchain.files import write_text
+from bedchain.meter import peak_memory_mb
 from bedchain.studies.tradeoff.bed_variants import REALISATION, BedVariant
 from bedchain.studies.tradeoff.observables import Reference, Seen, seen_errors
 from bedchain.studies.tradeoff.reference import curves_seen, densities_seen, scalars_seen
@@ -30,8 +31,6 @@ HALF = "dem"
 SOLVERS = ("bedFoam", "liggghts")
 # the peak is kept by the system: it has to be read once before a solver ends
 LOOK_EVERY_S = 0.5
-PEAK = re.compile(r"^VmHWM:\s+(\d+) kB$", re.M)
-KB_IN_MB = 1000.0
 PEAK_FILE = "peak_memory_mb"
 
 
@@ -142,7 +141,7 @@ def watched(work: Callable[[], Made], word: str, kept: Path) -> tuple[Made, floa
         done.set()
         watcher.join()
     if peak[0] > 0:
-        kept.write_text(repr(peak[0]))
+        write_text(kept, repr(peak[0]))
     return made, peak[0] if peak[0] > 0 else float("nan")
 
 
@@ -153,8 +152,7 @@ def solver_memory(word: str) -> float:
         try:
             command = (process / "cmdline").read_text(errors="replace")
             if word in command and Path(command.split("\0")[0]).name in SOLVERS:
-                match = PEAK.search((process / "status").read_text())
-                found = max(found, int(match[1]) / KB_IN_MB if match else 0.0)
+                found = max(found, peak_memory_mb(process.name))
         except OSError:  # it has ended meanwhile
             continue
     return found

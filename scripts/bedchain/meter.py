@@ -1,0 +1,38 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Peak memory of a process, as the system keeps it."""
+
+import re
+from pathlib import Path
+
+BYTES_IN_KB, BYTES_IN_MB = 1024, 1e6
+# of proc(5), clear_refs: the record of the highest memory use starts again
+CLEAR_PEAK = "5"
+PEAK = re.compile(r"^VmHWM:\s+(\d+) kB$", re.M)
+
+
+def peak_memory_mb(process: int | str = "self") -> float:
+    """Largest resident memory of a process so far [MB of 10^6 bytes]; 0 where the system does not say.
+
+    Not `resource.getrusage`: what it gives to a fresh process starts at the peak of the one that started it.
+
+    Parameters
+    ----------
+    process : int or str
+        Number of a process; this one by default.
+
+    Raises
+    ------
+    OSError
+        The process has ended.
+    """
+    match = PEAK.search((Path("/proc") / str(process) / "status").read_text(errors="replace"))
+    return int(match[1]) * BYTES_IN_KB / BYTES_IN_MB if match else 0.0
+
+
+def forget_peak() -> bool:
+    """Start the record of this process's peak again; whether the system lets us."""
+    try:
+        Path("/proc/self/clear_refs").write_text(CLEAR_PEAK)
+    except OSError:
+        return False
+    return True
