@@ -10,9 +10,7 @@ from pathlib import Path
 
 sys.path.insert(0, f"{workflow.basedir}/scripts")
 
-from bedchain.case.parameters import weight_per_area
-from bedchain.workflow import case_or_exit, cell_size, code, dated, pick, reference_or_exit
-from bedchain.workflow import solver_values, source_files, table_values
+from bedchain.workflow import case_or_exit, code, pick, reference_or_exit, source_files
 
 NAME = config.get("case", "short")
 FIDELITY = config.get("fidelity")
@@ -26,18 +24,14 @@ LOGS = f"logs/{MADE}"
 BENCHMARKS = f"benchmarks/{MADE}"
 MODELS = CASE["chain"]["models"]
 REPEATS = range(1, CASE["comparison"]["repeats"] + 1)
-OPTIONS = {model: CASE["chain"].get(model, {}) for model in MODELS}
 FORMS = {form: f".{form}" for form in ["png", "pdf", "csv"]}
 SOLVER = "results/bin/bedFoam"
 # the bed that all is made of, simulated or out of its archive: one for all presets
 BED = f"results/{NAME}"
 RUN = {"dem": f"{BED}/dem.json", "bed_series": f"{BED}/bed_series.csv"}
 TRAJECTORY = {"trajectory": f"{BED}/trajectory.npy", "metadata": f"{BED}/trajectory.json"}
-CHAIN_FILES = {"best": "scores_best"}
 GAS = CASE["gas"]["model"] != "none"  # without it nothing of OpenFOAM is built or run
 CLAIMS = source_files(f"cases/{NAME}", "claims.csv")  # about both chains of the paper
-DRUM = "liggghts_inputs/drum"
-AUDITED = ["bed", "particles", "contact", "gas", "drum"]
 MODEL_FIGURES = {"static": "fig3_static", "dynamic": "fig4_dynamic"}
 PLOTS = [
     "fig1_cells",
