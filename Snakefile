@@ -3,21 +3,25 @@
 #   snakemake --cores 2                        the case `short`, simulated, and `paper`, from its archive
 #   snakemake --cores 2 --config case=mueller  one case of cases/
 #   ... --config reference=simulate            not from the archive cases/<case>/reference/, but by the solvers
-#   ... --config fidelity=fast                 chains of a preset of cases/presets.yaml, into results/<case>-fast
+#   ... --config preset=fast                   chains of a preset of cases/presets.yaml, into results/<case>-fast
 # A rule gets only the keys of the case that it needs: what a changed key does not touch does not run again.
+import logging
 import sys
 from pathlib import Path
 
 sys.path.insert(0, f"{workflow.basedir}/scripts")
 
-from bedchain.workflow import case_or_exit, code, pick, reference_or_exit, source_files
+from bedchain.workflow import case_or_exit, code, pick, preset_name, reference_or_exit, source_files
+
+if not workflow.is_main_process:  # a job's own snakemake repeats no hint
+    logging.getLogger("bedchain").setLevel(logging.ERROR)
 
 NAME = config.get("case", "short")
-FIDELITY = config.get("fidelity")
-CASE = case_or_exit(NAME, FIDELITY)
+PRESET = preset_name(config)
+CASE = case_or_exit(NAME, PRESET)
 REFERENCE = reference_or_exit(config.get("reference"), NAME, CASE)
 WITH_PAPER = "case" not in config and Path("cases/paper/reference").exists()
-MADE = f"{NAME}-{FIDELITY}" if FIDELITY else NAME
+MADE = f"{NAME}-{PRESET}" if PRESET else NAME
 RESULTS = f"results/{MADE}"
 FIGURES = f"results/{MADE}/figures"
 LOGS = f"logs/{MADE}"
