@@ -3,41 +3,39 @@
 #   snakemake --cores 2                        the case `short`, simulated, and `paper`, from its archive
 #   snakemake --cores 2 --config case=mueller  one case of cases/
 #   ... --config reference=simulate            not from the archive cases/<case>/reference/, but by the solvers
-#   ... --config fidelity=fast                 chains of a preset of cases/presets.yaml, into results/<case>-fast
+#   ... --config preset=fast                   chains of a preset of cases/presets.yaml, into results/<case>-fast
 # A rule gets only the keys of the case that it needs: what a changed key does not touch does not run again.
+import logging
 import sys
 from pathlib import Path
 
 sys.path.insert(0, f"{workflow.basedir}/scripts")
 
-from bedchain.case.parameters import weight_per_area
-from bedchain.workflow import case_or_exit, cell_size, code, dated, pick, reference_or_exit
-from bedchain.workflow import solver_values, source_files, table_values
+from bedchain.workflow import case_or_exit, code, pick, preset_name, reference_or_exit, source_files
+
+if not workflow.is_main_process:  # a job's own snakemake repeats no hint
+    logging.getLogger("bedchain").setLevel(logging.ERROR)
 
 NAME = config.get("case", "short")
-FIDELITY = config.get("fidelity")
-CASE = case_or_exit(NAME, FIDELITY)
+PRESET = preset_name(config)
+CASE = case_or_exit(NAME, PRESET)
 REFERENCE = reference_or_exit(config.get("reference"), NAME, CASE)
 WITH_PAPER = "case" not in config and Path("cases/paper/reference").exists()
-MADE = f"{NAME}-{FIDELITY}" if FIDELITY else NAME
+MADE = f"{NAME}-{PRESET}" if PRESET else NAME
 RESULTS = f"results/{MADE}"
 FIGURES = f"results/{MADE}/figures"
 LOGS = f"logs/{MADE}"
 BENCHMARKS = f"benchmarks/{MADE}"
 MODELS = CASE["chain"]["models"]
 REPEATS = range(1, CASE["comparison"]["repeats"] + 1)
-OPTIONS = {model: CASE["chain"].get(model, {}) for model in MODELS}
 FORMS = {form: f".{form}" for form in ["png", "pdf", "csv"]}
 SOLVER = "results/bin/bedFoam"
 # the bed that all is made of, simulated or out of its archive: one for all presets
 BED = f"results/{NAME}"
 RUN = {"dem": f"{BED}/dem.json", "bed_series": f"{BED}/bed_series.csv"}
 TRAJECTORY = {"trajectory": f"{BED}/trajectory.npy", "metadata": f"{BED}/trajectory.json"}
-CHAIN_FILES = {"best": "scores_best"}
 GAS = CASE["gas"]["model"] != "none"  # without it nothing of OpenFOAM is built or run
 CLAIMS = source_files(f"cases/{NAME}", "claims.csv")  # about both chains of the paper
-DRUM = "liggghts_inputs/drum"
-AUDITED = ["bed", "particles", "contact", "gas", "drum"]
 MODEL_FIGURES = {"static": "fig3_static", "dynamic": "fig4_dynamic"}
 PLOTS = [
     "fig1_cells",

@@ -1,5 +1,9 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 # The bed: simulated by LIGGGHTS and OpenFOAM in restartable segments, or out of its archive; its frames.
+from bedchain.workflow import solver_values
+
+DRUM = "liggghts_inputs/drum"
+AUDITED = ["bed", "particles", "contact", "gas", "drum"]
 
 
 rule build_solver:

@@ -1,5 +1,9 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-# The chains: cells, transition matrices, runs, their comparison with the DEM, and tables.
+# The chains: cells, transition matrices, runs, their comparison with the DEM, the film, and tables.
+from bedchain.case.parameters import weight_per_area
+from bedchain.workflow import table_values
+
+OPTIONS = {model: CASE["chain"].get(model, {}) for model in MODELS}
 
 
 rule assign_cells:
@@ -159,6 +163,26 @@ rule time_models:
         comparison=pick(CASE, "comparison.start_s", "comparison.end_s"),
     script:
         "time_models.py"
+
+
+rule make_film:
+    input:
+        code("make_film"),
+        **TRAJECTORY,
+        cells=rules.assign_cells.output.cells,
+        transitions=f"{RESULTS}/transitions_{MODELS[0]}.npz",
+    output:
+        film=f"{FIGURES}/film.mp4",
+    log:
+        f"{LOGS}/make_film.log",
+    conda:
+        "../envs/python.yaml"
+    params:
+        **pick(CASE, "comparison.start_s", "comparison.end_s", "mixing.split_x_m", "chain.seed"),
+        **pick(CASE, "particles.diameter_m", "bed.thickness_m", "gas.cell_size_m"),
+        colours=[CASE["figures"][f"{half}_colour"] for half in ["left", "right"]],
+    script:
+        "make_film.py"
 
 
 rule write_table:

@@ -3,8 +3,9 @@
 #   verify    the solvers against theory                 peers    bedFoam beside other codes
 #   validate  a case against its measured profiles       scores   all chains, chosen by validation, tested once
 #   estimate  what a case will cost, before it runs      stability solvers and chains at their extremes
-#   tradeoff  what accuracy costs, of chains and of simulated beds; the presets of `fidelity`
+#   tradeoff  what accuracy costs, of chains and of simulated beds; the presets
 from bedchain.studies.tradeoff.bed_variants import variants_or_exit
+from bedchain.workflow import dated
 
 SCORE_PLOTS = ["fig_pareto", "fig5_best", "fig_autocorrelation", "fig_distribution_best"]
 
@@ -161,58 +162,6 @@ rule score_models:
         "score_models.py"
 
 
-rule plot_pareto:
-    input:
-        code("plot_pareto"),
-        scores=rules.score_models.output.scores,
-        selection=rules.score_models.output.selection,
-    output:
-        multiext(f"{FIGURES}/fig_pareto", **FORMS),
-    log:
-        f"{LOGS}/plot_pareto.log",
-    conda:
-        "../envs/python.yaml"
-    params:
-        **pick(CASE, "figures.resolution_dpi"),
-        baseline_lag_s=CASE["chain"]["lag_s"],
-        baseline_cell_m=CASE["bed"]["width_m"] / CASE["cells"]["columns"],
-    script:
-        "plot_pareto.py"
-
-
-rule plot_best_mixing:
-    input:
-        code("plot_best_mixing"),
-        mixing=rules.score_models.output.mixing,
-        selection=rules.score_models.output.selection,
-    output:
-        multiext(f"{FIGURES}/fig5_best", **FORMS),
-    log:
-        f"{LOGS}/plot_best_mixing.log",
-    conda:
-        "../envs/python.yaml"
-    params:
-        **pick(CASE, "figures.resolution_dpi", "figures.dem_colour", "figures.static_colour"),
-    script:
-        "plot_best_mixing.py"
-
-
-rule plot_autocorrelation:
-    input:
-        code("plot_autocorrelation"),
-        lagrangian=rules.score_models.output.lagrangian,
-    output:
-        multiext(f"{FIGURES}/fig_autocorrelation", **FORMS),
-    log:
-        f"{LOGS}/plot_autocorrelation.log",
-    conda:
-        "../envs/python.yaml"
-    params:
-        **pick(CASE, "figures.resolution_dpi", "figures.dem_colour"),
-    script:
-        "plot_autocorrelation.py"
-
-
 # What a case will cost, before it runs; after a run also what it did cost: snakemake --cores 2 estimate
 rule estimate:
     input:
@@ -295,35 +244,3 @@ rule study_tradeoff:
     shell:
         "python scripts/study_tradeoff.py {input.case} {params.folder} --log {log} --at-once {threads}"
         " --variants {params.variants}"
-
-
-rule plot_tradeoff:
-    input:
-        code("plot_tradeoff"),
-        tradeoff=rules.study_tradeoff.output.table,
-    output:
-        multiext(f"{FIGURES}/fig_tradeoff", **FORMS),
-    log:
-        f"{LOGS}/plot_tradeoff.log",
-    conda:
-        "../envs/python.yaml"
-    params:
-        **pick(CASE, "figures.resolution_dpi"),
-    script:
-        "plot_tradeoff.py"
-
-
-rule plot_variants:
-    input:
-        code("plot_variants"),
-        tradeoff=rules.study_tradeoff.output.table,
-    output:
-        multiext(f"{FIGURES}/fig_tradeoff_dem", **FORMS),
-    log:
-        f"{LOGS}/plot_variants.log",
-    conda:
-        "../envs/python.yaml"
-    params:
-        **pick(CASE, "figures.resolution_dpi"),
-    script:
-        "plot_variants.py"

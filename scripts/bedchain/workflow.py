@@ -1,12 +1,13 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""What the Snakefile asks: the case, its keys, and the files that a rule depends on."""
+"""The case of a run, its keys, and the files that a rule depends on, for the Snakefile."""
 
 import ast
+from collections.abc import Mapping
 from functools import cache
 from pathlib import Path
 from typing import Any
 
-from bedchain.case.load import load_case
+from bedchain.case.load import load_case, with_new_names
 from bedchain.case.parameters import solver_parameters
 from bedchain.case.presets import preset_named, with_preset
 from bedchain.case.scene_checks import used_keys
@@ -33,16 +34,22 @@ LIBRARY = "bedchain"
 CASES = Path("cases")
 
 
-def case_or_exit(name: str, fidelity: str | None = None) -> Case:
+def preset_name(config: Mapping[str, Any]) -> str | None:
+    """Preset that ``--config preset=`` names, if any; its old word ``fidelity`` is understood with a hint."""
+    name = with_new_names(config, "--config").get("preset")
+    return str(name) if name else None
+
+
+def case_or_exit(name: str, preset: str | None = None) -> Case:
     """The checked case of a name, or one clear message and the end of snakemake, before anything runs.
 
     Parameters
     ----------
     name : str
         A folder in ``cases/``.
-    fidelity : str, optional
-        A preset of ``cases/presets.yaml`` for its chains, ``--config fidelity=``; without it the one that
-        the case's key ``fidelity`` names, if any.
+    preset : str, optional
+        One of ``cases/presets.yaml`` for its chains; without it the one that the case's key ``preset`` names,
+        if any.
 
     Raises
     ------
@@ -57,8 +64,8 @@ def case_or_exit(name: str, fidelity: str | None = None) -> Case:
                 f"there is no case {name!r}: take --config case=NAME with one of {', '.join(known)}"
             )
         case = load_case(CASES / name / "case.yaml")
-        preset = fidelity or case.get("fidelity")
-        return with_preset(case, preset_named(str(preset))) if preset else case
+        preset = preset or case.get("preset")
+        return with_preset(case, preset_named(preset)) if preset else case
 
 
 def reference_or_exit(wanted: str | None, name: str, case: Case) -> Path | None:
@@ -143,7 +150,7 @@ def table_values(case: Case) -> dict[str, Any]:
             if not isinstance(value, dict):
                 values[f"{section}.{key}"] = value
             elif key in case["chain"]["models"]:
-                values |= {f"{section}.{key}.{name}": one for name, one in value.items()}
+                values |= {f"{section}.{key}.{name}": option for name, option in value.items()}
     return values
 
 
@@ -197,14 +204,16 @@ def module_files(name: str) -> list[Path]:
     """
     parts = name.split(".")
     packages = [SCRIPTS.joinpath(*parts[:end], "__init__.py") for end in range(1, len(parts) + 1)]
+    files = [file for file in packages if file.exists() and runs_code(file)]
     module = SCRIPTS.joinpath(*parts).with_suffix(".py")
-    return [file for file in packages if file.exists() and runs_code(file)] + [module] * module.exists()
+    return [*files, module] if module.exists() else files
 
 
 @cache
 def runs_code(file: Path) -> bool:
     """Whether a Python file holds anything besides its docstring."""
-    return len(ast.parse(file.read_text(encoding="utf-8")).body) > 1
+    tree = ast.parse(file.read_text(encoding="utf-8"))
+    return len(tree.body) > (ast.get_docstring(tree, clean=False) is not None)
 
 
 def dated(*patterns: str) -> dict[str, int]:
@@ -235,5 +244,5 @@ def source_files(folder: str, *patterns: str) -> list[str]:
     *patterns : str
         Such as ``"*.C"``.
     """
-    found = {file for pattern in patterns for file in Path(folder).rglob(pattern)}
-    return sorted(str(file) for file in found if file.is_file() and not file.is_symlink())
+    files = {file for pattern in patterns for file in Path(folder).rglob(pattern)}
+    return sorted(str(file) for file in files if file.is_file() and not file.is_symlink())

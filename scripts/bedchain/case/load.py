@@ -2,6 +2,9 @@
 """The case file: read, completed by the schema's defaults, and refused with every reason at once."""
 
 import difflib
+import logging
+from collections.abc import Mapping
+from functools import cache
 from pathlib import Path
 from typing import Any
 
@@ -13,6 +16,9 @@ from bedchain.case.scene_checks import checked_keys
 from bedchain.case.schema import SCHEMA_FILE, Case, Schema, case_value, load_schema, schema_keys
 from bedchain.case.strict_yaml import Lines, read_yaml
 from bedchain.errors import CaseError, Problem
+
+LOG = logging.getLogger(__name__)
+NEW_NAMES = {"fidelity": "preset"}  # keys of a case and words of --config that were renamed
 
 
 def load_case(file: Path | str, schema_file: Path = SCHEMA_FILE) -> Case:
@@ -45,6 +51,7 @@ def load_case(file: Path | str, schema_file: Path = SCHEMA_FILE) -> Case:
             "(file)", "holds no keys", f"start from cases/short/case.yaml, see {schema_file.name}"
         )
         raise CaseError(file, [problem])
+    data = with_new_names(data, str(file))
     errors = Draft202012Validator(schema).iter_errors(data)
     problems = list(dict.fromkeys(problem for error in errors for problem in _explain(error, schema, lines)))
     broken = {problem.key for problem in problems}
@@ -54,6 +61,33 @@ def load_case(file: Path | str, schema_file: Path = SCHEMA_FILE) -> Case:
     if problems:
         raise CaseError(file, sorted(problems, key=lambda problem: (problem.line or 0, problem.key)))
     return case
+
+
+def with_new_names(keys: Mapping[str, Any], place: str) -> dict[str, Any]:
+    """Keys by their names of today; a renamed one is understood, with a hint in the log.
+
+    Parameters
+    ----------
+    keys : mapping of str to value
+        Of a case file, or the words of ``--config``.
+    place : str
+        Where they stand, for the hint.
+
+    Returns
+    -------
+    dict of str to value
+    """
+    for old, new in NEW_NAMES.items():
+        if old in keys and new not in keys:
+            give_hint(f"{place}: {old} is now called {new}")
+            keys = {new if key == old else key: value for key, value in keys.items()}
+    return dict(keys)
+
+
+@cache
+def give_hint(message: str) -> None:
+    """Log a hint, once in a process."""
+    LOG.warning("hint: %s", message)
 
 
 def _with_defaults(data: Any, schema: Schema) -> Any:

@@ -95,9 +95,9 @@ def preset_named(name: str, file: Path = PRESETS) -> Preset:
     """
     presets = read_presets(file)
     if not presets:
-        raise UserError(f"there is no fidelity {name!r}: {file} holds no presets; {MADE_BY}")
+        raise UserError(f"there is no preset {name!r}: {file} holds no presets; {MADE_BY}")
     if name not in presets:
-        raise UserError(f"there is no fidelity {name!r} in {file}: take one of {', '.join(presets)}")
+        raise UserError(f"there is no preset {name!r} in {file}: take one of {', '.join(presets)}")
     return presets[name]
 
 

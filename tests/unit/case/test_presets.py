@@ -6,10 +6,10 @@ import copy
 import pytest
 import yaml
 
-from bedchain.case.load import load_case
+from bedchain.case.load import give_hint, load_case
 from bedchain.case.presets import Preset, preset_named, read_presets, with_preset
 from bedchain.errors import CaseError, UserError
-from bedchain.workflow import case_or_exit
+from bedchain.workflow import case_or_exit, preset_name
 from made import ROOT
 
 FAST = {"cell_m": 0.02, "lag_s": 0.2, "model": "static", "cost_s": 0.01, "error_floors": 2.5}
@@ -44,7 +44,7 @@ def test_presets_are_read_with_what_was_measured(presets):
 
 
 def test_an_unknown_preset_is_told_the_known_ones(presets):
-    with pytest.raises(UserError, match="no fidelity 'fats' in .*: take one of fast, accurate"):
+    with pytest.raises(UserError, match="no preset 'fats' in .*: take one of fast, accurate"):
         preset_named("fats", presets)
 
 
@@ -110,13 +110,34 @@ def test_a_preset_too_coarse_for_the_windows_is_refused_by_name(short):
         with_preset(short, preset(lag_s=2.0))
 
 
-def test_a_case_selects_by_one_key_and_the_command_line_goes_first(presets, tmp_path, monkeypatch):
+@pytest.mark.parametrize(("key", "hints"), [("preset", []), ("fidelity", ["fidelity is now called preset"])])
+def test_a_case_selects_by_one_key_and_the_command_line_goes_first(
+    presets, tmp_path, monkeypatch, caplog, key, hints
+):
     (tmp_path / "cases" / "own").mkdir(parents=True)
     text = (ROOT / "cases" / "short" / "case.yaml").read_text()
-    (tmp_path / "cases" / "own" / "case.yaml").write_text(text + "\nfidelity: fast\n")
+    (tmp_path / "cases" / "own" / "case.yaml").write_text(f"{text}\n{key}: fast\n")
     presets.rename(tmp_path / "cases" / "presets.yaml")
     monkeypatch.chdir(tmp_path)
-    assert case_or_exit("own")["chain"]["models"] == ["static"]
+    give_hint.cache_clear()
+    case = case_or_exit("own")
+    assert case["chain"]["models"] == ["static"] and case["preset"] == "fast" and "fidelity" not in case
     assert case_or_exit("own", "accurate")["chain"]["models"] == ["dynamic"]
+    assert caplog.messages == [f"hint: cases/own/case.yaml: {hint}" for hint in hints]
     with pytest.raises(SystemExit):
         case_or_exit("own", "best")
+
+
+def test_the_command_line_takes_the_old_word_with_one_hint(caplog):
+    give_hint.cache_clear()
+    assert [preset_name({"preset": "fast"}), preset_name({"case": "short"})] == ["fast", None]
+    assert [preset_name({"fidelity": "fast"}), preset_name({"fidelity": "fast"})] == ["fast", "fast"]
+    assert caplog.messages == ["hint: --config: fidelity is now called preset"]
+
+
+def test_the_old_key_beside_the_new_one_is_refused(tmp_path):
+    file = tmp_path / "case.yaml"
+    text = (ROOT / "cases" / "short" / "case.yaml").read_text()
+    file.write_text(f"{text}\npreset: fast\nfidelity: accurate\n")
+    with pytest.raises(CaseError, match="fidelity: is an unknown key"):
+        load_case(file)
