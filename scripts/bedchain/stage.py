@@ -89,13 +89,13 @@ def _paths(files: Any) -> Path | list[Path]:
 def stage_arguments(function: Callable[..., object], names: Mapping[str, Any]) -> dict[str, Any]:
     """Arguments of an entry function, looked up by the names of its parameters.
 
-    A parameter whose type is a dataclass is made from the mapping of its name where there is one, else from
-    the names of the dataclass's fields. A parameter with a default may be missing.
+    A parameter whose type is a dataclass or a named tuple is made from the mapping of its name where there
+    is one, else from the names of its fields. A parameter with a default may be missing.
 
     Parameters
     ----------
     function : callable
-        An entry function, or a dataclass.
+        An entry function, or a dataclass or named tuple.
     names : mapping of str to object
         Of `rule_names`.
 
@@ -106,12 +106,12 @@ def stage_arguments(function: Callable[..., object], names: Mapping[str, Any]) -
     Raises
     ------
     TypeError
-        A name is missing, or a mapping has other names than the dataclass.
+        A name is missing, or a mapping has other names than the fields.
     """
     arguments: dict[str, Any] = {}
     for parameter in inspect.signature(function, eval_str=True).parameters.values():
         name, kind = parameter.name, parameter.annotation
-        if isinstance(kind, type) and is_dataclass(kind):
+        if _has_fields(kind):
             arguments[name] = kind(**stage_arguments(kind, _names_for(kind, name, names)))
         elif name in names:
             arguments[name] = Path(names[name]) if kind is Path else names[name]
@@ -120,8 +120,12 @@ def stage_arguments(function: Callable[..., object], names: Mapping[str, Any]) -
     return arguments
 
 
+def _has_fields(kind: Any) -> bool:
+    return isinstance(kind, type) and (is_dataclass(kind) or hasattr(kind, "_fields"))
+
+
 def _names_for(kind: type, name: str, names: Mapping[str, Any]) -> Mapping[str, Any]:
-    """Where the fields of a dataclass are looked up: in the mapping of a name, or among all names."""
+    """Where the fields of a value object are looked up: in the mapping of a name, or among all names."""
     mapping = names.get(name)
     if not isinstance(mapping, Mapping):
         return names

@@ -165,7 +165,7 @@ def dispersion_rows(source: str, frames: Frames, grid: Grid, lags: Sequence[int]
     return rows
 
 
-def lacey_rows(source: str, times_s: NDArray[np.float64], numbers: NDArray[np.int64]) -> list[Row]:
+def lacey_rows(source: str, times_s: NDArray[np.float64], numbers: np.ndarray) -> list[Row]:
     """Lacey's index of the left and of the low particles over time.
 
     Parameters

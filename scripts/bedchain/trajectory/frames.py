@@ -2,6 +2,7 @@
 """Consecutive frames of the same particles: what a chain learns from and starts from."""
 
 from dataclasses import dataclass
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -62,6 +63,23 @@ class Frames:
             None if self.vx_m_s is None else self.vx_m_s[which],
             None if self.vz_m_s is None else self.vz_m_s[which],
         )
+
+
+class Window(NamedTuple):
+    """A stretch of time, both ends included.
+
+    Attributes
+    ----------
+    start_s, end_s : float
+        Ends [s]; each must be the time of a frame.
+    """
+
+    start_s: float
+    end_s: float
+
+    def frames(self, times_s: NDArray[np.float64]) -> slice:
+        """The frames in it; see `window`."""
+        return window(times_s, self.start_s, self.end_s)
 
 
 def check_times(times_s: NDArray[np.float64]) -> None:
