@@ -18,7 +18,7 @@ from bedchain.measures.mixing import GROUPS, Splits
 from bedchain.measures.numerical_dispersion import spreading
 from bedchain.stage import run_stage
 from bedchain.studies.scan import scan
-from bedchain.trajectory.frames import Frames, Window, lag_frames
+from bedchain.trajectory.frames import Frames, Lag, Window, lag_frames
 from bedchain.trajectory.grid import Grid
 from bedchain.trajectory.realisations import open_bed
 from bedchain.trajectory.store import BedFiles
@@ -162,7 +162,7 @@ def error_rows(name: str, grid: Grid, lag_s: float, remaining: np.ndarray, dem: 
 def spreading_rows(frames: Frames, grid: Grid, lag: int) -> list[Row]:
     """Dispersion of particles and cells, and what averaging over cells should add."""
     lag_s = lag * frames.interval_s
-    found = spreading(frames.x_m, frames.z_m, grid, lag, lag_s)
+    found = spreading(frames.x_m, frames.z_m, grid, Lag(lag, lag_s))
     return [
         _row(quantity, "dem", cell_size(grid), lag_s, axis, values[at], "m2/s")
         for quantity, values in zip(

@@ -18,7 +18,7 @@ from bedchain.files import write_csv
 from bedchain.measures.mixing import Splits
 from bedchain.meter import forget_peak, peak_memory_mb
 from bedchain.stage import LOG, run_stage
-from bedchain.trajectory.frames import Frames, Window, lag_frames, whole_steps
+from bedchain.trajectory.frames import Frames, Lag, Window, whole_steps
 from bedchain.trajectory.grid import Grid
 from bedchain.trajectory.realisations import open_bed
 from bedchain.trajectory.store import BedFiles, read_manifest
@@ -56,11 +56,11 @@ def time_models(
     learned, compared = in_memory(run.window(learning)), run.window(comparison)
     for path in transitions:
         chain = registry.load(path)
-        model, lag = chain.name, lag_frames(chain.lag_s, compared.interval_s)
-        start = in_memory(run.up_to(comparison.start_s, lag))
-        steps = whole_steps(len(compared.times_s), lag)
+        model, lag = chain.name, Lag.of(chain.lag_s, compared.interval_s)
+        start = in_memory(run.up_to(comparison.start_s, lag.frames))
+        steps = whole_steps(len(compared.times_s), lag.frames)
         options = settings.options.get(model, {})
-        rows += learning_rows(model, learned, run.grid, lag, chain.lag_s, settings.estimator, options)
+        rows += learning_rows(model, learned, run.grid, lag, settings.estimator, options)
         rows += running_rows(model, chain, start, steps, splits, settings.seed)
     write_csv(pd.DataFrame(rows), timing)
     for row in rows:
@@ -101,7 +101,7 @@ def dem_row(manifest: dict[str, Any], start_s: float, end_s: float) -> Row:
 
 
 def learning_rows(
-    model: str, learning: Frames, grid: Grid, lag: int, lag_s: float, estimator: str, options: dict[str, Any]
+    model: str, learning: Frames, grid: Grid, lag: Lag, estimator: str, options: dict[str, Any]
 ) -> list[Row]:
     """Learning of one chain; of those of the paper counting and estimating apart.
 
@@ -111,10 +111,8 @@ def learning_rows(
     learning : Frames
         The learning window, in memory.
     grid : Grid
-    lag : int
-        Frames in a step.
-    lag_s : float
-        The same [s].
+    lag : Lag
+        Of a step.
     estimator : str
     options : dict
         Settings of this model only.
@@ -124,19 +122,22 @@ def learning_rows(
     list of dict
     """
     cells, n_cells = learning.cells, grid.n_cells
-    moves = (len(cells) - lag) * cells.shape[1]
+    moves = (len(cells) - lag.frames) * cells.shape[1]
     count: Callable[[], Any]
     if model == "static":
-        count = lambda: counting.count_moves(cells, n_cells, lag)  # noqa: E731
+        count = lambda: counting.count_moves(cells, n_cells, lag.frames)  # noqa: E731
         counts = count()
         estimate: Callable[[], Any] = lambda: transition_matrix(counts, estimator)  # noqa: E731
     elif model != "dynamic":
-        learn = lambda: registry.learn(model, learning, grid, lag, estimator, **options)  # noqa: E731
+        learn = lambda: registry.learn(model, learning, grid, lag.frames, estimator, **options)  # noqa: E731
         return [measured(f"{model}_learn", learn, moves, "particle moves")]
     else:
-        count = lambda: (counting.count_pairs(cells, n_cells, lag), counting.count_moves(cells, n_cells, lag))  # noqa: E731
+        count = lambda: (  # noqa: E731
+            counting.count_pairs(cells, n_cells, lag.frames),
+            counting.count_moves(cells, n_cells, lag.frames),
+        )
         double, single = count()
-        estimate = lambda: dynamic.from_counts(double, single, grid, lag_s, estimator)  # noqa: E731
+        estimate = lambda: dynamic.from_counts(double, single, grid, lag.seconds, estimator)  # noqa: E731
     return [
         measured(f"{model}_count", count, moves, "particle moves"),
         measured(f"{model}_matrix", estimate, n_cells, "cells"),

@@ -151,6 +151,26 @@ def window(times_s: NDArray[np.float64], start_s: float, end_s: float) -> slice:
     return slice(ends[0], ends[1] + 1)
 
 
+class Lag(NamedTuple):
+    """A lag between two frames.
+
+    Attributes
+    ----------
+    frames : int
+        Frames between them.
+    seconds : float
+        The same as a time [s].
+    """
+
+    frames: int
+    seconds: float
+
+    @classmethod
+    def of(cls, lag_s: float, interval_s: float) -> "Lag":
+        """The lag of a time [s] between frames so far apart [s]; see `lag_frames`."""
+        return cls(lag_frames(lag_s, interval_s), lag_s)
+
+
 def lag_frames(lag_s: float, interval_s: float) -> int:
     """Lag as a number of frames.
 
