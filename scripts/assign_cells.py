@@ -5,21 +5,18 @@ from pathlib import Path
 
 import numpy as np
 
-from bedchain.stage import LOG, stage
+from bedchain.stage import LOG, run_stage
 from bedchain.trajectory.cell_store import write_cells
 from bedchain.trajectory.grid import Grid
-from bedchain.trajectory.store import open_trajectory
+from bedchain.trajectory.store import BedFiles
 
 
-def assign_cells(
-    trajectory: Path, metadata: Path, cells: Path, columns: int, rows: int, diameter_m: float
-) -> None:
+def assign_cells(bed: BedFiles, cells: Path, columns: int, rows: int, diameter_m: float) -> None:
     """Lay a grid over the bed and note where every particle is.
 
     Parameters
     ----------
-    trajectory, metadata : Path
-        ``trajectory.npy`` and ``trajectory.json``.
+    bed : BedFiles
     cells : Path
         Gets int32 (n_frames, n_particles), with times and the grid.
     columns, rows : int
@@ -32,7 +29,7 @@ def assign_cells(
     DataError
         A position outside the bed, or cells smaller than a particle.
     """
-    values, described = open_trajectory(trajectory, metadata)
+    values, described = bed.open()
     grid = Grid(described["width_m"], described["height_m"], columns, rows)
     grid.check_resolution(diameter_m)
     write_cells(values, np.array(described["times_s"]), grid, cells)
@@ -40,13 +37,5 @@ def assign_cells(
     LOG.info("%d cells of %s, %d frames, in %s", grid.n_cells, size, len(values), cells)
 
 
-if "snakemake" in globals():
-    with stage(snakemake.log[0]):
-        assign_cells(
-            Path(snakemake.input.trajectory),
-            Path(snakemake.input.metadata),
-            Path(snakemake.output.cells),
-            snakemake.params.columns,
-            snakemake.params.rows,
-            snakemake.params.diameter_m,
-        )
+if rule := globals().get("snakemake"):
+    run_stage(assign_cells, rule)

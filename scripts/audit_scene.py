@@ -6,7 +6,7 @@ from pathlib import Path
 from bedchain.case.scene import scene_of
 from bedchain.case.schema import Case
 from bedchain.files import write_csv
-from bedchain.stage import LOG, stage
+from bedchain.stage import LOG, run_stage
 from bedchain.studies.audit import audit
 
 
@@ -31,6 +31,5 @@ def audit_scene(case: Case, table: Path) -> None:
         LOG.warning("warning: %s %s (%s = %.3g, %s)", row.physics, done, row.number, row.value, row.source)
 
 
-if "snakemake" in globals():
-    with stage(snakemake.log[0]):
-        audit_scene(dict(snakemake.params.case), Path(snakemake.output.audit))
+if rule := globals().get("snakemake"):
+    run_stage(audit_scene, rule)

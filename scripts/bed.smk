@@ -44,7 +44,7 @@ rule audit_scene:
     input:
         code("audit_scene"),
     output:
-        audit=f"{RESULTS}/audit.csv",
+        table=f"{RESULTS}/audit.csv",
     log:
         f"{LOGS}/audit_scene.log",
     priority: 1
@@ -169,7 +169,5 @@ if REFERENCE:
             f"{BENCHMARKS}/unpack_reference.tsv"
         conda:
             "../envs/python.yaml"
-        params:
-            folder=subpath(input.provenance, parent=True),
         script:
             "unpack_reference.py"

@@ -5,32 +5,30 @@ from pathlib import Path
 from typing import Any
 
 from bedchain.chains import registry
-from bedchain.stage import LOG, stage
-from bedchain.trajectory.frames import lag_frames
-from bedchain.trajectory.realisations import open_realisation
+from bedchain.stage import LOG, run_stage
+from bedchain.trajectory.frames import Window, lag_frames
+from bedchain.trajectory.realisations import open_bed
+from bedchain.trajectory.store import BedFiles
 
 
 def build_transitions(
-    trajectory: Path, metadata: Path, cells: Path, transitions: Path,
-    model: str, estimator: str, lag_s: float, start_s: float, end_s: float,
+    bed: BedFiles, transitions: Path, model: str, estimator: str, lag_s: float, learning: Window,
     options: dict[str, Any] | None = None,
 ) -> None:  # fmt: skip
     """Count the moves between cells in a window and make a chain of them.
 
     Parameters
     ----------
-    trajectory, metadata, cells : Path
-        ``trajectory.npy``, ``trajectory.json``, ``cells.npz``.
+    bed : BedFiles
     transitions : Path
-        Gets the chain, for `bedchain.models.load`.
+        Gets the chain, for `bedchain.chains.registry.load`.
     model : str
-        A name in `bedchain.models.LEARNERS`.
+        A name in `bedchain.chains.registry.LEARNERS`.
     estimator : {"literal", "per_step", "pooled"}
         How counts become probabilities.
     lag_s : float
         Time of one step of the chain [s].
-    start_s, end_s : float
-        The learning window [s].
+    learning : Window
     options : dict, optional
         Settings of this model only.
 
@@ -39,26 +37,14 @@ def build_transitions(
     DataError
         An empty window, a lag that is no multiple of the frame interval; nothing is written then.
     """
-    bed = open_realisation("the run", trajectory, metadata, cells)
-    frames = bed.window(start_s, end_s)
+    run = open_bed(bed)
+    frames = run.window(learning)
     lag = lag_frames(lag_s, frames.interval_s)
-    chain = registry.learn(model, frames, bed.grid, lag, estimator, **(options or {}))
+    chain = registry.learn(model, frames, run.grid, lag, estimator, **(options or {}))
     registry.save(chain, transitions)
     for name, value in chain.report.items():
         LOG.info("%s chain, %s: %.6g", model, name, value)
 
 
-if "snakemake" in globals():
-    with stage(snakemake.log[0]):
-        build_transitions(
-            Path(snakemake.input.trajectory),
-            Path(snakemake.input.metadata),
-            Path(snakemake.input.cells),
-            Path(snakemake.output.transitions),
-            snakemake.wildcards.model,
-            snakemake.params.estimator,
-            snakemake.params.lag_s,
-            snakemake.params.start_s,
-            snakemake.params.end_s,
-            snakemake.params.options,
-        )
+if rule := globals().get("snakemake"):
+    run_stage(build_transitions, rule)

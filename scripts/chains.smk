@@ -87,8 +87,7 @@ rule compare_mixing:
     params:
         **pick(CASE, "comparison.start_s", "comparison.end_s", "mixing", "chain.models"),
         **pick(CASE, "figures.batch_height_m"),
-        bed_start_s=CASE["learning"]["start_s"],
-        bed_end_s=CASE["comparison"]["end_s"],
+        averaged={"start_s": CASE["learning"]["start_s"], "end_s": CASE["comparison"]["end_s"]},
         weight_Pa=weight_per_area(CASE),
     script:
         "compare_mixing.py"
@@ -133,7 +132,7 @@ rule diagnose_chains:
     conda:
         "../envs/python.yaml"
     params:
-        **pick(CASE, "mixing", "chain.models", "chain.estimator", "chain.seed"),
+        **pick(CASE, "mixing", "chain.estimator", "chain.seed"),
         options=OPTIONS,
         learning=CASE["learning"],
         comparison=pick(CASE, "comparison.start_s", "comparison.end_s"),
@@ -157,7 +156,7 @@ rule time_models:
         "../envs/python.yaml"
     threads: workflow.cores or 1
     params:
-        **pick(CASE, "mixing", "chain.models", "chain.estimator", "chain.seed"),
+        **pick(CASE, "mixing", "chain.estimator", "chain.seed"),
         options=OPTIONS,
         learning=CASE["learning"],
         comparison=pick(CASE, "comparison.start_s", "comparison.end_s"),
@@ -190,7 +189,7 @@ rule write_table:
         code("write_table"),
         schema="cases/case.schema.yaml",
     output:
-        table=f"{RESULTS}/table1.csv",
+        csv=f"{RESULTS}/table1.csv",
         png=f"{FIGURES}/table1.png",
         pdf=f"{FIGURES}/table1.pdf",
     log:
@@ -213,7 +212,7 @@ rule write_agreement:
         mixing=rules.compare_mixing.output.mixing,
         timing=rules.time_models.output.timing,
     output:
-        agreement=f"{RESULTS}/agreement.csv",
+        table=f"{RESULTS}/agreement.csv",
     log:
         f"{LOGS}/write_agreement.log",
     conda:

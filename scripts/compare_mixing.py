@@ -1,13 +1,13 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Mixing by the DEM and by the chains, and how they differ: results/<case>/mixing.csv and metrics.csv."""
 
-from collections.abc import Sequence
+from dataclasses import dataclass
 from pathlib import Path
 
 import numpy as np
 import pandas as pd
 
-from bedchain.comparison.curves import curve_table, curves_of
+from bedchain.comparison.curves import ChainFiles, curve_table, curves_of
 from bedchain.comparison.metrics import (
     batch_metrics,
     bed_metrics,
@@ -22,50 +22,72 @@ from bedchain.dem.series import read_series
 from bedchain.errors import UserError
 from bedchain.files import read_arrays, write_csv
 from bedchain.measures.batch import observed_shares
-from bedchain.measures.mixing import remaining_from_positions, sides
-from bedchain.stage import LOG, stage
-from bedchain.trajectory.frames import lag_frames
-from bedchain.trajectory.realisations import open_realisation
+from bedchain.measures.mixing import Splits, remaining_from_positions, sides
+from bedchain.stage import LOG, run_stage
+from bedchain.trajectory.frames import Window, lag_frames
+from bedchain.trajectory.realisations import open_bed
+from bedchain.trajectory.store import BedFiles
+
+
+@dataclass(frozen=True)
+class SolverSeries:
+    """The bed as a whole, as the solver followed it.
+
+    Attributes
+    ----------
+    bed_series : Path
+        ``bed_series.csv``.
+    averaged : Window
+        From the start of the learning to the end of the comparison.
+    weight_Pa : float
+        Weight of the particles over the bed's cross section [Pa].
+    """
+
+    bed_series: Path
+    averaged: Window
+    weight_Pa: float  # noqa: N815
+
+
+@dataclass(frozen=True)
+class Tables:
+    """Tables to make.
+
+    Attributes
+    ----------
+    mixing, metrics : Path
+        ``mixing.csv`` and ``metrics.csv``.
+    """
+
+    mixing: Path
+    metrics: Path
 
 
 def compare_mixing(
-    trajectory: Path, metadata: Path, cells: Path, chains: dict[str, Path], bed_series: Path,
-    mixing: Path, metrics: Path,
-    start_s: float, end_s: float, split_x_m: float, split_z_m: float, batch_height_m: float,
-    bed_start_s: float, bed_end_s: float, weight_Pa: float, repeats: Sequence[Path] = (),
+    bed: BedFiles, chains: ChainFiles, solver: SolverSeries, repeats: list[Path], tables: Tables,
+    comparison: Window, splits: Splits, batch_height_m: float,
 ) -> None:  # fmt: skip
     """Put the curves of the DEM and of all chains in one table, and their differences in another.
 
     Parameters
     ----------
-    trajectory, metadata, cells : Path
-        ``trajectory.npy``, ``trajectory.json``, ``cells.npz``.
-    chains : dict of str to Path
-        ``chain_<model>.npz`` by model.
-    bed_series : Path
-        ``bed_series.csv`` of the solver.
-    mixing, metrics : Path
-        Tables to make.
-    start_s, end_s : float
-        The comparison window [s].
-    split_x_m, split_z_m : float
-        Lines between left and right, low and up [m].
+    bed : BedFiles
+    chains : ChainFiles
+    solver : SolverSeries
+    repeats : list of Path
+        ``mixing.csv`` of each repeat of the DEM, in order of their numbers.
+    tables : Tables
+    comparison : Window
+    splits : Splits
     batch_height_m : float
         Height of the batch of Figs. 3 and 4 [m].
-    bed_start_s, bed_end_s : float
-        Start of the learning and end of the comparison window, between which the bed is averaged [s].
-    weight_Pa : float
-        Weight of the particles over the bed's cross section [Pa].
-    repeats : sequence of Path
-        ``mixing.csv`` of each repeat of the DEM, in order of their numbers.
     """
-    bed = open_realisation("the run", trajectory, metadata, cells)
-    frames = bed.window(start_s, end_s)
-    dem = remaining_from_positions(frames.x_m, frames.z_m, split_x_m, split_z_m)
+    run = open_bed(bed)
+    frames = run.window(comparison)
+    dem = remaining_from_positions(frames.x_m, frames.z_m, *splits)
     places = zip(frames.x_m, frames.z_m, strict=True)
-    on_side = np.array([sides(x, z, split_x_m, split_z_m).mean(axis=1) for x, z in places])
+    on_side = np.array([sides(x, z, *splits).mean(axis=1) for x, z in places])
     curves = [curve_table(frames.times_s, "dem", dem)]
-    rows = bed_metrics(read_series(bed_series), weight_Pa, bed_start_s, bed_end_s)
+    rows = bed_metrics(read_series(solver.bed_series), solver.weight_Pa, *solver.averaged)
     rows += [metric("particles", "dem", frames.cells.shape[1])]
     rows += dem_metrics(on_side, dem)
     curves += [pd.read_csv(path) for path in repeats]
@@ -73,11 +95,12 @@ def compare_mixing(
     realisations = np.stack([dem, *further])
     if further:
         rows += floor_metrics(realisations)
-    for model, path in chains.items():
+    for model, path in chains.by_model().items():
         chain = read_arrays(path)
-        observed = observed_shares(bed.stored, chain["moments_s"], start_s, batch_height_m)
+        observed = observed_shares(run.case_cells, chain["moments_s"], comparison.start_s, batch_height_m)
         lag = lag_frames(float(chain["lag_s"]), frames.interval_s)
         if len(chain["times_s"]) != len(dem[::lag]):
+            start_s, end_s = comparison
             raise UserError(f"{path} covers another window than {start_s:g} to {end_s:g} s: delete it")
         for source, how, replicates in (
             (model, "", chain["remaining_replicates"]),
@@ -91,29 +114,11 @@ def compare_mixing(
             rows += batch_metrics(source, chain["moments_s"], share, observed)
         rows += report_metrics(model, str(chain["report"]))
     table = pd.DataFrame(rows)
-    write_csv(pd.concat(curves, ignore_index=True), mixing)
-    write_csv(table, metrics)
+    write_csv(pd.concat(curves, ignore_index=True), tables.mixing)
+    write_csv(table, tables.metrics)
     for row in table[table["quantity"].str.startswith(("error_rms", "pressure_drop_over"))].itertuples():
         LOG.info("%s, %s: %.4g", row.source, row.quantity, row.value)
 
 
-if "snakemake" in globals():
-    with stage(snakemake.log[0]):
-        compare_mixing(
-            Path(snakemake.input.trajectory),
-            Path(snakemake.input.metadata),
-            Path(snakemake.input.cells),
-            dict(zip(snakemake.params.models, map(Path, snakemake.input.chains), strict=True)),
-            Path(snakemake.input.bed_series),
-            Path(snakemake.output.mixing),
-            Path(snakemake.output.metrics),
-            snakemake.params.start_s,
-            snakemake.params.end_s,
-            snakemake.params.split_x_m,
-            snakemake.params.split_z_m,
-            snakemake.params.batch_height_m,
-            snakemake.params.bed_start_s,
-            snakemake.params.bed_end_s,
-            snakemake.params.weight_Pa,
-            [Path(file) for file in snakemake.input.repeats],
-        )
+if rule := globals().get("snakemake"):
+    run_stage(compare_mixing, rule)

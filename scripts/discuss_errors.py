@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Errors of the chains by cell size and lag, with theory and noise: results/<case>/discussion.csv."""
 
+from dataclasses import dataclass
 from functools import lru_cache
 from itertools import chain as joined
 from itertools import product
@@ -13,13 +14,14 @@ import pandas as pd
 from bedchain.chains import registry
 from bedchain.comparison.curves import curve_errors, curves_of
 from bedchain.files import write_csv
-from bedchain.measures.mixing import GROUPS
+from bedchain.measures.mixing import GROUPS, Splits
 from bedchain.measures.numerical_dispersion import spreading
-from bedchain.stage import stage
+from bedchain.stage import run_stage
 from bedchain.studies.scan import scan
-from bedchain.trajectory.frames import Frames, lag_frames, window
+from bedchain.trajectory.frames import Frames, Lag, Window, lag_frames
 from bedchain.trajectory.grid import Grid
-from bedchain.trajectory.realisations import open_realisation
+from bedchain.trajectory.realisations import open_bed
+from bedchain.trajectory.store import BedFiles
 from bedchain.uncertainty.noise_floor import noise_floor
 
 AXES = ("x", "z")
@@ -27,11 +29,47 @@ ROUND_OFF = 1e-6
 Row = dict[str, Any]
 
 
+@dataclass(frozen=True)
+class CaseChains:
+    """The case's own chains.
+
+    Attributes
+    ----------
+    columns, rows : int
+        Of their grid.
+    lag_s : float
+        Of a step [s].
+    estimator : {"literal", "per_step", "pooled"}
+        How counts become probabilities.
+    """
+
+    columns: int
+    rows: int
+    lag_s: float
+    estimator: str
+
+
+@dataclass(frozen=True)
+class Scanned:
+    """Chains to run besides.
+
+    Attributes
+    ----------
+    names : list of str
+        Models.
+    cell_sizes_m, lags_s : list of float
+        Sizes of cells [m], rounded so that they divide the bed, and lags [s]; a lag that is no
+        multiple of the frame interval, or does not divide both windows, is left out.
+    """
+
+    names: list[str]
+    cell_sizes_m: list[float]
+    lags_s: list[float]
+
+
 def discuss_errors(
-    trajectory: Path, metadata: Path, mixing: Path, discussion: Path,
-    learning: dict[str, float], comparison: dict[str, float], split_x_m: float, split_z_m: float,
-    columns: int, rows: int, lag_s: float, estimator: str, names: list[str],
-    cell_sizes_m: list[float], lags_s: list[float],
+    bed: BedFiles, mixing: Path, discussion: Path, learning: Window, comparison: Window, splits: Splits,
+    case: CaseChains, scanned: Scanned,
 ) -> None:  # fmt: skip
     """Learn and run chains of many grids and lags, and measure what theory says of them.
 
@@ -41,48 +79,36 @@ def discuss_errors(
 
     Parameters
     ----------
-    trajectory, metadata, mixing : Path
-        ``trajectory.npy``, ``trajectory.json``, ``mixing.csv``.
+    bed : BedFiles
+    mixing : Path
+        ``mixing.csv``.
     discussion : Path
         Table to make: quantity, source, cell_m, lag_s, part, value, unit.
-    learning, comparison : dict of str to float
-        start_s and end_s of each window [s].
-    split_x_m, split_z_m : float
-        Lines between left and right, low and up [m].
-    columns, rows : int
-        Of the case's own grid.
-    lag_s : float
-        Of the case's own chains [s].
-    estimator : str
-        How counts become probabilities.
-    names : list of str
-        Models.
-    cell_sizes_m, lags_s : list of float
-        Sizes of cells [m], rounded so that they divide the bed, and lags [s]; a lag that is no
-        multiple of the frame interval, or does not divide both windows, is left out.
+    learning, comparison : Window
+    splits : Splits
+    case : CaseChains
+    scanned : Scanned
     """
-    bed = open_realisation("the run", trajectory, metadata)
-    learned, compared = (
-        window(bed.times_s, part["start_s"], part["end_s"]) for part in (learning, comparison)
-    )
-    size, own_lag = (bed.width_m, bed.height_m), lag_frames(lag_s, bed.interval_s)
-    own_grid = Grid(*size, columns, rows)
-    grids = [Grid(*size, *(max(1, round(length / cell)) for length in size)) for cell in cell_sizes_m]
-    lags = [round(lag / bed.interval_s) for lag in lags_s if is_whole(lag / bed.interval_s)]
+    run = open_bed(bed)
+    learned, compared = (part.frames(run.times_s) for part in (learning, comparison))
+    size, own_lag = (run.width_m, run.height_m), lag_frames(case.lag_s, run.interval_s)
+    own_grid = Grid(*size, case.columns, case.rows)
+    grids = [Grid(*size, *(max(1, round(length / cell)) for length in size)) for cell in scanned.cell_sizes_m]
+    lags = [round(lag / run.interval_s) for lag in scanned.lags_s if is_whole(lag / run.interval_s)]
     lengths = [part.stop - part.start - 1 for part in (learned, compared)]
     lags = [lag for lag in lags if not any(length % lag for length in lengths)]
     curves = realisations(pd.read_csv(mixing), lengths[1] + 1)
-    mean, in_memory = curves.mean(axis=0), lru_cache(maxsize=1)(lambda grid: bed.frames(grid, learned))
+    mean, in_memory = curves.mean(axis=0), lru_cache(maxsize=1)(lambda grid: run.frames(grid, learned))
 
     def measured(setting: tuple[Grid, int]) -> list[Row]:
         grid, lag = setting
-        known, start = in_memory(grid), bed.leading_to(grid, compared.start, lag)
+        known, start = in_memory(grid), run.leading_to(grid, compared.start, lag)
         found = spreading_rows(known, grid, lag)
-        for name in names:
+        for name in scanned.names:
             coarser = grid.n_cells <= own_grid.n_cells
-            if name == names[0] or own_grid == grid or (own_lag == lag and coarser):
-                chain = registry.learn(name, known, grid, lag, estimator)
-                remaining = chain.mixing(start, split_x_m, split_z_m, lengths[1] // lag)
+            if name == scanned.names[0] or own_grid == grid or (own_lag == lag and coarser):
+                chain = registry.learn(name, known, grid, lag, case.estimator)
+                remaining = chain.mixing(start, *splits, lengths[1] // lag)
                 found += error_rows(name, grid, chain.lag_s, remaining, mean[::lag])
         return found
 
@@ -136,7 +162,7 @@ def error_rows(name: str, grid: Grid, lag_s: float, remaining: np.ndarray, dem: 
 def spreading_rows(frames: Frames, grid: Grid, lag: int) -> list[Row]:
     """Dispersion of particles and cells, and what averaging over cells should add."""
     lag_s = lag * frames.interval_s
-    found = spreading(frames.x_m, frames.z_m, grid, lag, lag_s)
+    found = spreading(frames.x_m, frames.z_m, grid, Lag(lag, lag_s))
     return [
         _row(quantity, "dem", cell_size(grid), lag_s, axis, values[at], "m2/s")
         for quantity, values in zip(
@@ -153,22 +179,5 @@ def _row(quantity: str, source: str, cell_m: float, lag_s: float, part: str, val
     }  # fmt: skip
 
 
-if "snakemake" in globals():
-    with stage(snakemake.log[0]):
-        discuss_errors(
-            Path(snakemake.input.trajectory),
-            Path(snakemake.input.metadata),
-            Path(snakemake.input.mixing),
-            Path(snakemake.output.discussion),
-            snakemake.params.learning,
-            snakemake.params.comparison,
-            snakemake.params.split_x_m,
-            snakemake.params.split_z_m,
-            snakemake.params.columns,
-            snakemake.params.rows,
-            snakemake.params.lag_s,
-            snakemake.params.estimator,
-            snakemake.params.names,
-            snakemake.params.cell_sizes_m,
-            snakemake.params.lags_s,
-        )
+if rule := globals().get("snakemake"):
+    run_stage(discuss_errors, rule)

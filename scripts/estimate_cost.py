@@ -2,6 +2,7 @@
 """What a case will cost, and after a run what it did cost: results/<case>/estimate.csv, estimate.txt."""
 
 import os
+from collections.abc import Iterable
 from pathlib import Path
 
 import pandas as pd
@@ -9,7 +10,7 @@ import pandas as pd
 from bedchain.case.presets import read_presets
 from bedchain.case.schema import Case
 from bedchain.files import write_csv, write_text
-from bedchain.stage import LOG, stage
+from bedchain.stage import LOG, run_stage
 from bedchain.studies.cost.actual import FACTOR_AIM, compared, happened, outside
 from bedchain.studies.cost.estimate import predicted
 from bedchain.studies.cost.machine_speed import bed_of, calibrate
@@ -25,7 +26,7 @@ BUSY_CORES = 0.5  # other programs that keep more of the machine busy are worth 
 
 
 def estimate_cost(
-    case: Case, bed: Path, benchmarks: dict[str, Path], runs: list[Path], archived: bool, presets: Path,
+    case: Case, bed: str, benchmarks: dict[str, str], records: Iterable[str], archived: bool, presets: Path,
     table: Path, text: Path,
 ) -> None:  # fmt: skip
     """Estimate every stage of a case, and set what has happened beside it.
@@ -34,12 +35,12 @@ def estimate_cost(
     ----------
     case : dict
         A checked case.
-    bed : Path
-        ``results/<case>``, where its particles are simulated.
-    benchmarks : dict of str to Path
-        Snakemake's benchmarks by ``bed`` and ``made``.
-    runs : list of Path
-        Every ``dem.json`` there is; those of other cases tell how fast this machine is.
+    bed : str
+        Folder in ``results/`` where its particles are simulated.
+    benchmarks : dict of str to str
+        Folders of Snakemake's benchmarks by ``bed`` and ``made``.
+    records : iterable of str
+        Files of earlier runs; each ``dem.json`` of another case shows how fast this machine is.
     archived : bool
         Whether the bed is taken from an archive.
     presets : Path
@@ -47,9 +48,12 @@ def estimate_cost(
     table, text : Path
         Get the estimate, the second to be read.
     """
-    speed = calibrate([run for run in runs if run.parent != bed], bed_of(case))
+    results = Path("results") / bed
+    runs = [Path(file) for file in records if Path(file).name == "dem.json"]
+    speed = calibrate([run for run in runs if run.parent != results], bed_of(case))
+    folders = {name: Path(folder) for name, folder in benchmarks.items()}
     expected = predicted(case, speed, read_presets(presets).values(), archived)
-    found = compared(expected, happened(case, bed, table.parent, benchmarks))
+    found = compared(expected, happened(case, results, table.parent, folders))
     write_csv(found.reset_index(), table)
     write_text(text, "\n".join([*header(case, speed.source, archived), lines(found), ""]))
     for name in outside(found):
@@ -81,15 +85,5 @@ def lines(table: pd.DataFrame) -> str:
     return short.rename_axis(None).to_string()
 
 
-if "snakemake" in globals():
-    with stage(snakemake.log[0]):
-        estimate_cost(
-            snakemake.params.case,
-            Path("results") / snakemake.params.bed,
-            {name: Path(folder) for name, folder in snakemake.params.benchmarks.items()},
-            [Path(file) for file in snakemake.params.records if Path(file).name == "dem.json"],
-            snakemake.params.archived,
-            Path(snakemake.params.presets),
-            Path(snakemake.output.table),
-            Path(snakemake.output.text),
-        )
+if rule := globals().get("snakemake"):
+    run_stage(estimate_cost, rule)

@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """A film of the comparison: particles of the DEM, their voidage, particles of a chain: figures/film.mp4."""
 
+from dataclasses import dataclass
 from pathlib import Path
 
 import imageio_ffmpeg
@@ -16,9 +17,11 @@ from bedchain.chains import registry
 from bedchain.figures.film import Canvas, in_their_cells, voidages
 from bedchain.figures.style import close_frame, figure_style
 from bedchain.files import complete
-from bedchain.stage import LOG, stage
-from bedchain.trajectory.frames import lag_frames
-from bedchain.trajectory.realisations import open_realisation
+from bedchain.measures.voidage import Slab
+from bedchain.stage import LOG, run_stage
+from bedchain.trajectory.frames import Window, lag_frames
+from bedchain.trajectory.realisations import open_bed
+from bedchain.trajectory.store import BedFiles
 
 FRAMES_PER_SECOND = 20
 # of particles that change from frame to frame: 4 MB for 10 s
@@ -29,51 +32,61 @@ FREEBOARD = 0.1
 VOIDAGE_COLOURS, VOIDAGE_LEAST = "Blues_r", 0.35
 
 
+@dataclass(frozen=True)
+class Halves:
+    """Colours of the particles by the half that they started in.
+
+    Attributes
+    ----------
+    split_x_m : float
+        Line between left and right [m].
+    colours : list of str
+        Of particles that started left and right.
+    """
+
+    split_x_m: float
+    colours: list[str]
+
+
 def make_film(
-    trajectory: Path, metadata: Path, cells: Path, transitions: Path, film: Path,
-    start_s: float, end_s: float, split_x_m: float, diameter_m: float, thickness_m: float, gas_cell_m: float,
-    colours: list[str], seed: int, progress: bool = True,
+    bed: BedFiles, transitions: Path, film: Path, comparison: Window, halves: Halves, slab: Slab,
+    cell_size_m: float, seed: int,
 ) -> None:  # fmt: skip
     """Draw every step of the chain over the comparison, particles in the colour of the half they started in.
 
     Parameters
     ----------
-    trajectory, metadata, cells, transitions : Path
-        ``trajectory.npy``, ``trajectory.json``, ``cells.npz``, ``transitions_<model>.npz``.
+    bed : BedFiles
+    transitions : Path
+        ``transitions_<model>.npz``.
     film : Path
         mp4 to make.
-    start_s, end_s : float
-        The comparison window [s].
-    split_x_m : float
-        Line between left and right [m].
-    diameter_m, thickness_m : float
-        Of a particle, of the slab [m].
-    gas_cell_m : float
-        Cells that the voidage is shown in [m].
-    colours : list of str
-        Of particles that started left and right.
+    comparison : Window
+    halves : Halves
+    slab : Slab
+    cell_size_m : float
+        Size of the gas cells, in which the voidage is shown [m].
     seed : int
         Of the chain's Monte Carlo run, and of where in its cell each particle is drawn.
-    progress : bool
-        Show a bar with the time left.
     """
-    bed, chain = open_realisation("the run", trajectory, metadata, cells), registry.load(transitions)
-    frames = bed.window(start_s, end_s)
+    run, chain = open_bed(bed), registry.load(transitions)
+    frames = run.window(comparison)
     lag = lag_frames(chain.lag_s, frames.interval_s)
-    start = bed.up_to(start_s, lag)
+    start = run.up_to(comparison.start_s, lag)
     for_paths, for_places = np.random.default_rng(seed).spawn(2)
-    top = min(bed.grid.height_m, (1 + FREEBOARD) * float(max(z.max() for z in frames.z_m)))
-    canvas = Canvas(bed.grid.width_m, top, diameter_m, colours)
-    left = frames.x_m[0] < split_x_m
+    top = min(run.grid.height_m, (1 + FREEBOARD) * float(max(z.max() for z in frames.z_m)))
+    canvas = Canvas(run.grid.width_m, top, slab.diameter_m, halves.colours)
+    left = frames.x_m[0] < halves.split_x_m
     dem = zip(frames.x_m[::lag], frames.z_m[::lag], strict=True)
     paths = chain.paths(start, (len(frames.times_s) - 1) // lag, for_paths)
-    places = in_their_cells(paths, bed.grid, for_places.random((2, left.size)))
-    voidage = voidages(frames, lag, bed.grid.width_m, top, gas_cell_m, thickness_m, diameter_m)
+    places = in_their_cells(paths, run.grid, for_places.random((2, left.size)))
+    size = run.grid.width_m, top
+    voidage = voidages(frames, lag, *size, cell_size_m, slab.thickness_m, slab.diameter_m)
     rcParams["animation.ffmpeg_path"] = imageio_ffmpeg.get_ffmpeg_exe()
     writer = FFMpegWriter(fps=FRAMES_PER_SECOND, bitrate=KILOBITS_PER_SECOND)
     with figure_style(), complete(film) as temporary:
         # a film's frames are of even numbers of pixels
-        wide = 2 * round(DPI * HEIGHT_IN * (2.4 * bed.grid.width_m / top + 0.35) / 2) / DPI
+        wide = 2 * round(DPI * HEIGHT_IN * (2.4 * run.grid.width_m / top + 0.35) / 2) / DPI
         figure, panels = plt.subplots(1, 3, figsize=(wide, HEIGHT_IN), sharey=True)
         names = ("DEM", "voidage of the DEM", f"{chain.name} chain")
         images = [_panel(*pair, canvas) for pair in zip(panels, names, strict=True)]
@@ -83,11 +96,10 @@ def make_film(
         steps = zip(frames.times_s[::lag], dem, voidage, places, strict=True)
         total = (len(frames.times_s) - 1) // lag + 1
         with writer.saving(figure, str(temporary), DPI):
-            for time_s, of_dem, gas, of_chain in tqdm(steps, "make_film", total, disable=not progress):
-                for image, content in zip(
-                    images, (canvas.discs(*of_dem, left), gas, canvas.discs(*of_chain, left)), strict=True
-                ):
-                    image.set_data(content)
+            for time_s, of_dem, gas, of_chain in tqdm(steps, "make_film", total, disable=None):
+                images[0].set_data(canvas.discs(*of_dem, left))
+                images[1].set_data(gas)
+                images[2].set_data(canvas.discs(*of_chain, left))
                 title.set_text(f"{time_s:.3f} s")
                 writer.grab_frame()
     LOG.info("%d frames, %.1f MB in %s", total, film.stat().st_size / 1e6, film)
@@ -107,20 +119,5 @@ def _panel(axes: Axes, name: str, canvas: Canvas) -> AxesImage:
     return image
 
 
-if "snakemake" in globals():
-    with stage(snakemake.log[0]):
-        make_film(
-            Path(snakemake.input.trajectory),
-            Path(snakemake.input.metadata),
-            Path(snakemake.input.cells),
-            Path(snakemake.input.transitions),
-            Path(snakemake.output.film),
-            snakemake.params.start_s,
-            snakemake.params.end_s,
-            snakemake.params.split_x_m,
-            snakemake.params.diameter_m,
-            snakemake.params.thickness_m,
-            snakemake.params.cell_size_m,
-            snakemake.params.colours,
-            snakemake.params.seed,
-        )
+if rule := globals().get("snakemake"):
+    run_stage(make_film, rule)

@@ -7,48 +7,33 @@ import numpy as np
 
 from bedchain.comparison.curves import curve_table
 from bedchain.files import write_csv
-from bedchain.measures.mixing import remaining_from_positions
-from bedchain.stage import LOG, stage
-from bedchain.trajectory.frames import window
-from bedchain.trajectory.store import open_trajectory
+from bedchain.measures.mixing import Splits, remaining_from_positions
+from bedchain.stage import LOG, run_stage
+from bedchain.trajectory.frames import Window
+from bedchain.trajectory.store import BedFiles
 
 
-def measure_mixing(
-    trajectory: Path, metadata: Path, mixing: Path,
-    source: str, start_s: float, end_s: float, split_x_m: float, split_z_m: float,
-) -> None:  # fmt: skip
+def measure_mixing(bed: BedFiles, mixing: Path, source: str, comparison: Window, splits: Splits) -> None:
     """Mark the particles at the start of the comparison and follow them.
 
     Parameters
     ----------
-    trajectory, metadata : Path
-        ``trajectory.npy`` and ``trajectory.json`` of the repeat.
+    bed : BedFiles
+        Of the repeat.
     mixing : Path
         Table to make.
     source : str
         Name of the repeat in it, ``dem_1``, ``dem_2``, ...
-    start_s, end_s : float
-        The comparison window [s].
-    split_x_m, split_z_m : float
-        Lines between left and right, low and up [m].
+    comparison : Window
+    splits : Splits
     """
-    store, described = open_trajectory(trajectory, metadata)
+    store, described = bed.open()
     times_s = np.array(described["times_s"])
-    frames = window(times_s, start_s, end_s)
-    remaining = remaining_from_positions(store[frames, 0], store[frames, 1], split_x_m, split_z_m)
+    frames = comparison.frames(times_s)
+    remaining = remaining_from_positions(store[frames, 0], store[frames, 1], *splits)
     write_csv(curve_table(times_s[frames], source, remaining), mixing)
-    LOG.info("%s: %d frames from %g s to %g s", source, len(remaining), start_s, end_s)
+    LOG.info("%s: %d frames from %g s to %g s", source, len(remaining), *comparison)
 
 
-if "snakemake" in globals():
-    with stage(snakemake.log[0]):
-        measure_mixing(
-            Path(snakemake.input.trajectory),
-            Path(snakemake.input.metadata),
-            Path(snakemake.output.mixing),
-            snakemake.params.source,
-            snakemake.params.start_s,
-            snakemake.params.end_s,
-            snakemake.params.split_x_m,
-            snakemake.params.split_z_m,
-        )
+if rule := globals().get("snakemake"):
+    run_stage(measure_mixing, rule)

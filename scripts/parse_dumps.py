@@ -3,7 +3,7 @@
 
 from pathlib import Path
 
-from bedchain.stage import LOG, stage
+from bedchain.stage import LOG, run_stage
 from bedchain.trajectory.store import write_trajectory
 
 
@@ -15,12 +15,5 @@ def parse_dumps(
     LOG.info("%d frames of %d particles in %s", len(manifest["frames"]), manifest["number"], trajectory)
 
 
-if "snakemake" in globals():
-    with stage(snakemake.log[0]):
-        parse_dumps(
-            Path(snakemake.input.dem),
-            Path(snakemake.output.trajectory),
-            Path(snakemake.output.metadata),
-            snakemake.params.width_m,
-            snakemake.params.height_m,
-        )
+if rule := globals().get("snakemake"):
+    run_stage(parse_dumps, rule)

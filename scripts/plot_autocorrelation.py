@@ -10,28 +10,24 @@ from matplotlib.axes import Axes
 
 from bedchain.errors import UserError
 from bedchain.figures.model_styles import BASELINE, label, model_styles
-from bedchain.figures.style import DOUBLE_COLUMN_IN, LINE_COLOUR, figure_style, save_figure
+from bedchain.figures.style import DOUBLE_COLUMN_IN, LINE_COLOUR, FigureFiles, figure_style
 from bedchain.files import write_csv
-from bedchain.stage import stage
+from bedchain.stage import run_stage
 
 ROWS = {"x": "along x", "z": "along z"}
 
 
-def plot_autocorrelation(
-    lagrangian: Path, png: Path, pdf: Path, csv: Path, dem_colour: str, resolution_dpi: int
-) -> None:
+def plot_autocorrelation(lagrangian: Path, files: FigureFiles, dem_colour: str) -> None:
     """Draw displacement autocorrelation and mean-square displacement, along x and z.
 
     Parameters
     ----------
     lagrangian : Path
         ``scores_lagrangian.csv``.
-    png, pdf, csv : Path
+    files : FigureFiles
         Figure in two forms, and the numbers behind it.
     dem_colour : str
         Colour of the DEM.
-    resolution_dpi : int
-        Of the png [dots per inch].
 
     Raises
     ------
@@ -56,8 +52,8 @@ def plot_autocorrelation(
             axes.set_xlabel("time between [s]")
         handles, labels = panels[0, 0].get_legend_handles_labels()
         figure.legend(handles, labels, loc="outside upper center", ncols=3, handlelength=2.8)
-        save_figure(figure, png, pdf, resolution_dpi)
-    write_csv(table, csv)
+        files.save(figure)
+    write_csv(table, files.csv)
 
 
 def _draw(axes: Axes, table: pd.DataFrame, column: str, dem_colour: str) -> None:
@@ -76,13 +72,5 @@ def _draw(axes: Axes, table: pd.DataFrame, column: str, dem_colour: str) -> None
     axes.set_axisbelow(True)
 
 
-if "snakemake" in globals():
-    with stage(snakemake.log[0]):
-        plot_autocorrelation(
-            Path(snakemake.input.lagrangian),
-            Path(snakemake.output.png),
-            Path(snakemake.output.pdf),
-            Path(snakemake.output.csv),
-            snakemake.params.dem_colour,
-            snakemake.params.resolution_dpi,
-        )
+if rule := globals().get("snakemake"):
+    run_stage(plot_autocorrelation, rule)

@@ -2,6 +2,7 @@
 """Fig. 5 with the best model: DEM and its repeats, the paper's static chain, the model validation chose."""
 
 from pathlib import Path
+from typing import Any
 
 import pandas as pd
 from matplotlib import pyplot as plt
@@ -9,30 +10,27 @@ from matplotlib.axes import Axes
 
 from bedchain.errors import UserError
 from bedchain.figures.model_styles import BASELINE, label, model_styles
-from bedchain.figures.style import DOUBLE_COLUMN_IN, figure_style, save_figure
+from bedchain.figures.style import DOUBLE_COLUMN_IN, FigureFiles, figure_style
 from bedchain.files import write_csv
-from bedchain.stage import stage
+from bedchain.stage import run_stage
 
 PANELS = {"left": "left half", "right": "right half", "low": "lower part", "up": "upper part"}
 REPEAT, MONTE_CARLO = "repeat_", "_monte_carlo"
 
 
 def plot_best_mixing(
-    mixing: Path, selection: Path, png: Path, pdf: Path, csv: Path,
-    dem_colour: str, static_colour: str, resolution_dpi: int,
-) -> None:  # fmt: skip
+    mixing: Path, selection: Path, files: FigureFiles, dem_colour: str, static_colour: str
+) -> None:
     """Draw the four groups, each with the DEM, the range of its repeats, and two chains.
 
     Parameters
     ----------
     mixing, selection : Path
         ``scores_mixing.csv`` and ``selection.csv``.
-    png, pdf, csv : Path
+    files : FigureFiles
         Figure in two forms, and the numbers behind it.
     dem_colour, static_colour : str
         Colours of the DEM and of the static chain.
-    resolution_dpi : int
-        Of the png [dots per inch].
 
     Raises
     ------
@@ -57,8 +55,8 @@ def plot_best_mixing(
         panels[0, 0].set_xlim(kept["time_s"].min(), kept["time_s"].max())
         handles, labels = panels[0, 0].get_legend_handles_labels()
         figure.legend(handles, labels, loc="outside upper center", ncols=5, handlelength=2.4)
-        save_figure(figure, png, pdf, resolution_dpi)
-    write_csv(kept, csv)
+        files.save(figure)
+    write_csv(kept, files.csv)
 
 
 def _draw_group(axes: Axes, table: pd.DataFrame, chosen: str, dem_colour: str, static_colour: str) -> None:
@@ -77,7 +75,7 @@ def _draw_group(axes: Axes, table: pd.DataFrame, chosen: str, dem_colour: str, s
             lw=0,
             label=f"{number} DEM runs",
         )
-    drawn = {
+    drawn: dict[str, dict[str, Any]] = {
         "dem": {"color": dem_colour, "lw": 1.6, "label": "DEM"},
         BASELINE: {"color": static_colour, "ls": (0, (4, 1.5)), "label": label(BASELINE)},
         chosen: {"color": style.colour, "lw": 1.6, "label": f"{label(chosen)} (best)"},
@@ -95,15 +93,5 @@ def _draw_group(axes: Axes, table: pd.DataFrame, chosen: str, dem_colour: str, s
     axes.set_axisbelow(True)
 
 
-if "snakemake" in globals():
-    with stage(snakemake.log[0]):
-        plot_best_mixing(
-            Path(snakemake.input.mixing),
-            Path(snakemake.input.selection),
-            Path(snakemake.output.png),
-            Path(snakemake.output.pdf),
-            Path(snakemake.output.csv),
-            snakemake.params.dem_colour,
-            snakemake.params.static_colour,
-            snakemake.params.resolution_dpi,
-        )
+if rule := globals().get("snakemake"):
+    run_stage(plot_best_mixing, rule)

@@ -1,20 +1,19 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Fig. 1: the numbered cells over the particles of one frame."""
 
-from pathlib import Path
-
 import numpy as np
 import pandas as pd
 from matplotlib import pyplot as plt
 from matplotlib.axes import Axes
 from matplotlib.patches import Rectangle
 
-from bedchain.figures.style import SINGLE_COLUMN_IN, close_frame, draw_particles, figure_style, save_figure
+from bedchain.figures.style import SINGLE_COLUMN_IN, FigureFiles, close_frame, draw_particles, figure_style
 from bedchain.files import write_csv
-from bedchain.stage import stage
-from bedchain.trajectory.cell_store import frame_at, open_cells
+from bedchain.stage import run_stage
+from bedchain.trajectory.cell_store import frame_at
 from bedchain.trajectory.grid import Grid
-from bedchain.trajectory.store import open_trajectory
+from bedchain.trajectory.realisations import open_bed
+from bedchain.trajectory.store import BedFiles
 
 # more cells than these cannot carry a number that can be read
 CORNER_COLUMNS, CORNER_ROWS = 5, 10
@@ -22,17 +21,13 @@ WHOLE_BED_LABELS = 11
 GRID_COLOUR = "#666666"
 
 
-def plot_cells(
-    trajectory: Path, metadata: Path, cells: Path, png: Path, pdf: Path, csv: Path,
-    time_s: float, diameter_m: float, colour: str, resolution_dpi: int,
-) -> None:  # fmt: skip
+def plot_cells(bed: BedFiles, files: FigureFiles, time_s: float, diameter_m: float, colour: str) -> None:
     """Draw the whole bed with its cells, and its lower left corner with all numbers.
 
     Parameters
     ----------
-    trajectory, metadata, cells : Path
-        ``trajectory.npy``, ``trajectory.json``, ``cells.npz``.
-    png, pdf, csv : Path
+    bed : BedFiles
+    files : FigureFiles
         Figure in two forms, and the numbers behind it.
     time_s : float
         Time of the frame [s].
@@ -40,27 +35,25 @@ def plot_cells(
         Particle diameter [m].
     colour : str
         Colour of the particles.
-    resolution_dpi : int
-        Of the png [dots per inch].
     """
-    store = open_cells(cells)
-    values, _ = open_trajectory(trajectory, metadata)
-    frame = frame_at(store.times_s, time_s)
-    x, z = (np.asarray(values[frame, row], float) for row in (0, 1))
-    held = np.bincount(store.cells[frame], minlength=store.grid.n_cells)
+    run = open_bed(bed)
+    frame = frame_at(run.times_s, time_s)
+    seen = run.frames(run.grid, slice(frame, frame + 1))
+    x, z = (np.asarray(places[0], float) for places in (seen.x_m, seen.z_m))
+    held = np.bincount(seen.cells[0], minlength=run.grid.n_cells)
     with figure_style():
-        shape = min(store.grid.height_m / store.grid.width_m, 3.0)
+        shape = min(run.grid.height_m / run.grid.width_m, 3.0)
         figure, (whole, corner) = plt.subplots(
             1, 2, figsize=(SINGLE_COLUMN_IN, max(2.6, min(1.45 * shape, 4.6))), width_ratios=[1, 1]
         )
-        _draw_whole_bed(whole, store.grid, x, z, diameter_m, colour)
-        _draw_corner(corner, whole, store.grid, x, z, diameter_m, colour)
-        whole.set_title(f"bed at {store.times_s[frame]:.2f} s")
+        _draw_whole_bed(whole, run.grid, x, z, diameter_m, colour)
+        _draw_corner(corner, whole, run.grid, x, z, diameter_m, colour)
+        whole.set_title(f"bed at {run.times_s[frame]:.2f} s")
         corner.set_title("its lower left corner")
         for axes in (whole, corner):
             axes.set_anchor("S")
-        save_figure(figure, png, pdf, resolution_dpi)
-    write_csv(cell_table(store.grid, held, store.times_s[frame]), csv)
+        files.save(figure)
+    write_csv(cell_table(run.grid, held, run.times_s[frame]), files.csv)
 
 
 def cell_table(grid: Grid, held: np.ndarray, time_s: float) -> pd.DataFrame:
@@ -122,9 +115,9 @@ def _draw_corner(
     axes.hlines(grid.z_edges_m[: rows + 1], 0, width, colors=GRID_COLOUR, linewidths=0.5)
     for row in range(rows):
         for column in range(columns):
-            centre = grid.centres_m[row * grid.columns + column]
+            x_m, z_m = grid.centres_m[row * grid.columns + column]
             axes.text(
-                *centre, str(row * grid.columns + column), ha="center", va="center", fontsize=6,
+                x_m, z_m, str(row * grid.columns + column), ha="center", va="center", fontsize=6,
                 bbox={"facecolor": "white", "edgecolor": "none", "alpha": 0.85, "pad": 0.6},
             )  # fmt: skip
     axes.set(xlim=(0, width), ylim=(0, height), xlabel="x [m]")
@@ -133,17 +126,5 @@ def _draw_corner(
     whole.add_patch(Rectangle((0, 0), width, height, fill=False, edgecolor="black", linewidth=1.2, zorder=5))
 
 
-if "snakemake" in globals():
-    with stage(snakemake.log[0]):
-        plot_cells(
-            Path(snakemake.input.trajectory),
-            Path(snakemake.input.metadata),
-            Path(snakemake.input.cells),
-            Path(snakemake.output.png),
-            Path(snakemake.output.pdf),
-            Path(snakemake.output.csv),
-            snakemake.params.time_s,
-            snakemake.params.diameter_m,
-            snakemake.params.colour,
-            snakemake.params.resolution_dpi,
-        )
+if rule := globals().get("snakemake"):
+    run_stage(plot_cells, rule)

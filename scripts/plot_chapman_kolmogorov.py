@@ -2,44 +2,48 @@
 """Chapman-Kolmogorov test: mixing by chains of several lags beside what the DEM shows in the same window."""
 
 from pathlib import Path
+from typing import Any
 
 import pandas as pd
 from matplotlib import pyplot as plt
+from matplotlib.artist import Artist
 from matplotlib.axes import Axes
+from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 from matplotlib.patches import Patch
 from matplotlib.ticker import FuncFormatter, MaxNLocator
 
 from bedchain.errors import UserError
-from bedchain.figures.style import DOUBLE_COLUMN_IN, figure_style, save_figure
+from bedchain.figures.style import DOUBLE_COLUMN_IN, FigureFiles, figure_style
 from bedchain.files import write_csv
-from bedchain.stage import stage
+from bedchain.stage import run_stage
 
 GROUPS = {"left": "left half", "right": "right half", "low": "lower part", "up": "upper part"}
 CURVES = ("remaining_propagated", "remaining_counted")
 # every other one of the doubled lags: the curves between them lie between theirs
 LAG_STRIDE = 2
-STYLES = (((0, (4, 1.5)), ""), ((0, (1.2, 1.2)), "o"), ("none", "s"), ("none", "^"))
+STYLES: tuple[tuple[Any, str], ...] = (
+    ((0, (4, 1.5)), ""),
+    ((0, (1.2, 1.2)), "o"),
+    ("none", "s"),
+    ("none", "^"),
+)
 BAND_OPACITY = 0.3
 BAND_COLOUR = "#888888"
 ROW_HEIGHT_IN = 1.75
 
 
-def plot_chapman_kolmogorov(
-    diagnostics: Path, png: Path, pdf: Path, csv: Path, colours: dict[str, str], resolution_dpi: int
-) -> None:
+def plot_chapman_kolmogorov(diagnostics: Path, files: FigureFiles, colours: dict[str, str]) -> None:
     """Draw each group of each model: the DEM, and chains of several lags carried on step by step.
 
     Parameters
     ----------
     diagnostics : Path
         ``diagnostics.csv`` of diagnose_chains.
-    png, pdf, csv : Path
+    files : FigureFiles
         Figure in two forms, and the numbers behind it.
     colours : dict of str to str
         Colours of ``dem`` and of each model; those without curves in the table (no matrix) are left out.
-    resolution_dpi : int
-        Of the png [dots per inch].
 
     Raises
     ------
@@ -71,7 +75,7 @@ def plot_chapman_kolmogorov(
         panels[0, 0].set_xlim(0, table["time_s"].max())
         panels[0, 0].set_ylim(None, 1.03)
         _legend(figure, lags, colours)
-        save_figure(figure, png, pdf, resolution_dpi)
+        files.save(figure)
     columns = ["source", "lag_s", "time_s", "part", "value", "ci_low", "ci_high"]
     names = {
         "part": "group",
@@ -79,7 +83,7 @@ def plot_chapman_kolmogorov(
         "ci_low": "band_low_1",
         "ci_high": "band_high_1",
     }
-    write_csv(table[columns].rename(columns=names), csv)
+    write_csv(table[columns].rename(columns=names), files.csv)
 
 
 def _draw_dem(axes: Axes, curve: pd.DataFrame, colour: str) -> None:
@@ -99,8 +103,8 @@ def _draw_chains(axes: Axes, table: pd.DataFrame, lags: list[float], colour: str
                   mfc="white", mew=0.9, clip_on=False)  # fmt: skip
 
 
-def _legend(figure, lags: list[float], colours: dict[str, str]) -> None:  # type: ignore[no-untyped-def]
-    handles = [
+def _legend(figure: Figure, lags: list[float], colours: dict[str, str]) -> None:
+    handles: list[Artist] = [
         Line2D([], [], color=colours["dem"], lw=1.6),
         Patch(color=BAND_COLOUR, alpha=BAND_OPACITY, lw=0),
     ]
@@ -113,13 +117,5 @@ def _legend(figure, lags: list[float], colours: dict[str, str]) -> None:  # type
     figure.legend(handles, labels, loc="outside upper center", ncols=5, handlelength=2.6, columnspacing=1.4)
 
 
-if "snakemake" in globals():
-    with stage(snakemake.log[0]):
-        plot_chapman_kolmogorov(
-            Path(snakemake.input.diagnostics),
-            Path(snakemake.output.png),
-            Path(snakemake.output.pdf),
-            Path(snakemake.output.csv),
-            snakemake.params.colours,
-            snakemake.params.resolution_dpi,
-        )
+if rule := globals().get("snakemake"):
+    run_stage(plot_chapman_kolmogorov, rule)

@@ -8,9 +8,9 @@ from matplotlib import pyplot as plt
 from matplotlib.axes import Axes
 
 from bedchain.errors import UserError
-from bedchain.figures.style import DOUBLE_COLUMN_IN, figure_style, save_figure
+from bedchain.figures.style import DOUBLE_COLUMN_IN, FigureFiles, figure_style
 from bedchain.files import write_csv
-from bedchain.stage import stage
+from bedchain.stage import run_stage
 
 KINDS = {
     "simulate": ("{model}: simulate", "s", True),
@@ -21,31 +21,27 @@ KINDS = {
 ROW_IN = 0.21
 
 
-def plot_cost(
-    timing: Path, png: Path, pdf: Path, csv: Path, colour: str, window_s: float, resolution_dpi: int
-) -> None:
+def plot_cost(timing: Path, files: FigureFiles, colour: str, window_s: float) -> None:
     """Draw what each model costs, on a logarithmic axis, with the ratios to the DEM.
 
     Parameters
     ----------
     timing : Path
         ``timing.csv`` of time_models.
-    png, pdf, csv : Path
+    files : FigureFiles
         Figure in two forms, and the numbers behind it.
     colour : str
         Colour of the marks.
     window_s : float
         Length of the comparison window [s].
-    resolution_dpi : int
-        Of the png [dots per inch].
     """
     table = cost_table(pd.read_csv(timing))
     with figure_style():
         figure, axes = plt.subplots(figsize=(DOUBLE_COLUMN_IN, 0.7 + ROW_IN * len(table)))
         _draw(axes, table, colour)
         axes.set_xlabel(f"wall time for {window_s:g} s of bed [s]")
-        save_figure(figure, png, pdf, resolution_dpi)
-    write_csv(table, csv)
+        files.save(figure)
+    write_csv(table, files.csv)
 
 
 def cost_table(timing: pd.DataFrame) -> pd.DataFrame:
@@ -134,14 +130,5 @@ def _two_digits(value: float) -> str:
     return f"{rounded:.0f}" if rounded >= 10 else f"{rounded:.1f}"
 
 
-if "snakemake" in globals():
-    with stage(snakemake.log[0]):
-        plot_cost(
-            Path(snakemake.input.timing),
-            Path(snakemake.output.png),
-            Path(snakemake.output.pdf),
-            Path(snakemake.output.csv),
-            snakemake.params.colour,
-            snakemake.params.window_s,
-            snakemake.params.resolution_dpi,
-        )
+if rule := globals().get("snakemake"):
+    run_stage(plot_cost, rule)

@@ -11,10 +11,10 @@ from matplotlib.collections import PolyCollection, QuadMesh
 from matplotlib.colors import LinearSegmentedColormap, Normalize
 
 from bedchain.errors import UserError
-from bedchain.figures.style import DOUBLE_COLUMN_IN, close_frame, figure_style, save_figure, shown_height
+from bedchain.figures.style import DOUBLE_COLUMN_IN, FigureFiles, close_frame, figure_style, shown_height
 from bedchain.files import read_arrays, write_csv
 from bedchain.measures.batch import total_variation
-from bedchain.stage import LOG, stage
+from bedchain.stage import LOG, run_stage
 from bedchain.trajectory.cell_store import open_cells
 from bedchain.trajectory.grid import Grid
 
@@ -33,9 +33,7 @@ BESIDE_IN, ABOVE_IN, BETWEEN_IN = 1.45, 0.8, 0.18
 TALLEST_IN = 3.4
 
 
-def plot_difference(
-    cells: Path, static: Path, dynamic: Path, png: Path, pdf: Path, csv: Path, resolution_dpi: int
-) -> None:
+def plot_difference(cells: Path, static: Path, dynamic: Path, files: FigureFiles) -> None:
     """Draw the expected distribution by the static less that by the dynamic chain, one map a moment.
 
     Parameters
@@ -44,10 +42,8 @@ def plot_difference(
         ``cells.npz``.
     static, dynamic : Path
         ``chain_static.npz`` and ``chain_dynamic.npz``.
-    png, pdf, csv : Path
+    files : FigureFiles
         Figure in two forms, and the numbers behind it.
-    resolution_dpi : int
-        Of the png [dots per inch].
 
     Raises
     ------
@@ -64,13 +60,13 @@ def plot_difference(
         "total variation of static and dynamic chain: %s, mean %.4f", distances.round(4), distances.mean()
     )
     with figure_style(), plt.rc_context({"hatch.linewidth": HATCH_WIDTH}):
-        draw_maps(grid, moments, shares, distances, png, pdf, resolution_dpi)
-    write_csv(difference_table(grid, moments, shares, distances), csv)
+        draw_maps(grid, moments, shares, distances, files)
+    write_csv(difference_table(grid, moments, shares, distances), files.csv)
 
 
 def draw_maps(
     grid: Grid, moments: np.ndarray, shares: tuple[np.ndarray, np.ndarray], distances: np.ndarray,
-    png: Path, pdf: Path, resolution_dpi: int,
+    files: FigureFiles
 ) -> None:  # fmt: skip
     """One map a moment in one colour scale, with the distance of both distributions above it."""
     difference = 100 * (shares[0] - shares[1])
@@ -94,7 +90,7 @@ def draw_maps(
     bar.set_label("static less dynamic\n[% of the batch in a cell]")
     bar.ax.axhspan(-limit, -HATCHED * limit, fill=False, hatch=HATCH, edgecolor=HATCH_COLOUR, linewidth=0)
     bar.outline.set_linewidth(0.5)
-    save_figure(figure, png, pdf, resolution_dpi)
+    files.save(figure)
 
 
 def _draw_map(axes: Axes, values: np.ndarray, grid: Grid, limit: float) -> QuadMesh:
@@ -106,7 +102,7 @@ def _draw_map(axes: Axes, values: np.ndarray, grid: Grid, limit: float) -> QuadM
     corners_z = z + 0.5 * grid.cell_height_m * np.array([-1, -1, 1, 1])
     corners = np.stack((corners_x, corners_z), axis=2)
     axes.add_collection(
-        PolyCollection(corners, facecolors="none", edgecolors=HATCH_COLOUR, hatch=HATCH, linewidths=0)
+        PolyCollection(list(corners), facecolors="none", edgecolors=HATCH_COLOUR, hatch=HATCH, linewidths=0)
     )
     axes.set_aspect("equal")
     return mesh
@@ -158,14 +154,5 @@ def difference_table(
     )
 
 
-if "snakemake" in globals():
-    with stage(snakemake.log[0]):
-        plot_difference(
-            Path(snakemake.input.cells),
-            Path(snakemake.input.static),
-            Path(snakemake.input.dynamic),
-            Path(snakemake.output.png),
-            Path(snakemake.output.pdf),
-            Path(snakemake.output.csv),
-            snakemake.params.resolution_dpi,
-        )
+if rule := globals().get("snakemake"):
+    run_stage(plot_difference, rule)

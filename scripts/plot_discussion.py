@@ -11,9 +11,9 @@ from matplotlib.axes import Axes
 from matplotlib.ticker import LogLocator, NullLocator
 
 from bedchain.errors import UserError
-from bedchain.figures.style import DOUBLE_COLUMN_IN, figure_style, save_figure
+from bedchain.figures.style import DOUBLE_COLUMN_IN, FigureFiles, figure_style
 from bedchain.files import write_csv
-from bedchain.stage import stage
+from bedchain.stage import run_stage
 
 DIRECTIONS = {"left and right": ["left", "right"], "low and up": ["low", "up"]}
 STYLES = {"left and right": ("-", "o"), "low and up": ((0, (4, 1.5)), "s")}
@@ -26,23 +26,20 @@ LEGEND_ROOM = 0.35
 
 
 def plot_discussion(
-    discussion: Path, png: Path, pdf: Path, csv: Path,
-    own_cell_m: float, own_lag_s: float, colours: dict[str, str], resolution_dpi: int,
-) -> None:  # fmt: skip
+    discussion: Path, files: FigureFiles, own_cell_m: float, own_lag_s: float, colours: dict[str, str]
+) -> None:
     """Draw the signed errors over cell size and lag, and what spreads the particles.
 
     Parameters
     ----------
     discussion : Path
         ``discussion.csv``.
-    png, pdf, csv : Path
+    files : FigureFiles
         Figure in two forms, and the numbers behind it.
     own_cell_m, own_lag_s : float
         Of the case's own chains [m], [s].
     colours : dict of str to str
         Colours of ``dem`` and of each model.
-    resolution_dpi : int
-        Of the png [dots per inch].
 
     Raises
     ------
@@ -71,8 +68,8 @@ def plot_discussion(
         _draw_dispersion(panels[2], table[table["part"] == "x"])
         handles, labels = panels[0].get_legend_handles_labels()
         figure.legend(handles, labels, loc="outside upper left", ncols=3, handlelength=2.6)
-        save_figure(figure, png, pdf, resolution_dpi)
-    write_csv(table, csv)
+        files.save(figure)
+    write_csv(table, files.csv)
 
 
 def _draw_errors(axes: Axes, errors: pd.DataFrame, over: str, colours: dict[str, str], factor: float) -> None:
@@ -130,15 +127,5 @@ def _ticks(axes: Axes, places: np.ndarray) -> None:
     axes.xaxis.set_minor_locator(NullLocator())
 
 
-if "snakemake" in globals():
-    with stage(snakemake.log[0]):
-        plot_discussion(
-            Path(snakemake.input.discussion),
-            Path(snakemake.output.png),
-            Path(snakemake.output.pdf),
-            Path(snakemake.output.csv),
-            snakemake.params.own_cell_m,
-            snakemake.params.own_lag_s,
-            snakemake.params.colours,
-            snakemake.params.resolution_dpi,
-        )
+if rule := globals().get("snakemake"):
+    run_stage(plot_discussion, rule)

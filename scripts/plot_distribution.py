@@ -10,16 +10,16 @@ from matplotlib.colors import PowerNorm
 
 from bedchain.figures.style import (
     DOUBLE_COLUMN_IN,
+    FigureFiles,
     close_frame,
     draw_cells,
     figure_style,
     map_colours,
-    save_figure,
     shown_height,
 )
 from bedchain.files import write_csv
 from bedchain.measures.batch import observed_shares, total_variation
-from bedchain.stage import LOG, stage
+from bedchain.stage import LOG, run_stage
 from bedchain.trajectory.cell_store import open_cells
 from bedchain.trajectory.grid import Grid
 
@@ -35,8 +35,8 @@ TALLEST_IN = 3.4
 
 
 def plot_distribution(
-    cells: Path, chain: Path, png: Path, pdf: Path, csv: Path,
-    model: str, start_s: float, batch_height_m: float, colour_map: str, resolution_dpi: int,
+    cells: Path, chain: Path, files: FigureFiles,
+    model: str, start_s: float, batch_height_m: float, colour_map: str
 ) -> None:  # fmt: skip
     """Draw the expected distribution of the chain beside the DEM's own, in one colour scale.
 
@@ -44,7 +44,7 @@ def plot_distribution(
     ----------
     cells, chain : Path
         ``cells.npz`` and ``chain_<model>.npz``.
-    png, pdf, csv : Path
+    files : FigureFiles
         Figure in two forms, and the numbers behind it.
     model : str
         Name of the chain, where its file holds none.
@@ -54,8 +54,6 @@ def plot_distribution(
         Height of the batch [m].
     colour_map : str
         Name of a Matplotlib colour map.
-    resolution_dpi : int
-        Of the png [dots per inch].
     """
     store = open_cells(cells)
     with np.load(chain) as content:
@@ -79,15 +77,13 @@ def plot_distribution(
         "; ".join(notes).replace("\n", " "),
     )
     with figure_style():
-        draw_moments(
-            store.grid, moments, observed, expected, notes, model, colour_map, png, pdf, resolution_dpi
-        )
-    write_csv(distribution_table(store.grid, moments, {"dem": observed, model: expected}), csv)
+        draw_moments(store.grid, moments, observed, expected, notes, model, colour_map, files)
+    write_csv(distribution_table(store.grid, moments, {"dem": observed, model: expected}), files.csv)
 
 
 def draw_moments(
     grid: Grid, moments: np.ndarray, observed: np.ndarray, expected: np.ndarray, notes: list[str],
-    model: str, colour_map: str, png: Path, pdf: Path, resolution_dpi: int,
+    model: str, colour_map: str, files: FigureFiles
 ) -> None:  # fmt: skip
     """Two rows of maps, the DEM above the chain, one column a moment, with one colour bar for all."""
     both = 100 * np.array([observed, expected])
@@ -118,7 +114,7 @@ def draw_moments(
     bar = figure.colorbar(mesh, ax=panels, extend="max", aspect=35, shrink=0.9, pad=0.015)
     bar.set_label("share of the batch in a cell [%]")
     bar.outline.set_linewidth(0.5)
-    save_figure(figure, png, pdf, resolution_dpi)
+    files.save(figure)
 
 
 def _height_to_show(shares: np.ndarray, grid: Grid) -> float:
@@ -165,17 +161,5 @@ def distribution_table(grid: Grid, moments: np.ndarray, sources: dict[str, np.nd
     return pd.concat(parts, ignore_index=True)
 
 
-if "snakemake" in globals():
-    with stage(snakemake.log[0]):
-        plot_distribution(
-            Path(snakemake.input.cells),
-            Path(snakemake.input.chain),
-            Path(snakemake.output.png),
-            Path(snakemake.output.pdf),
-            Path(snakemake.output.csv),
-            snakemake.params.model,
-            snakemake.params.start_s,
-            snakemake.params.batch_height_m,
-            snakemake.params.colour_map,
-            snakemake.params.resolution_dpi,
-        )
+if rule := globals().get("snakemake"):
+    run_stage(plot_distribution, rule)

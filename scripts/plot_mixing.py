@@ -9,10 +9,11 @@ from matplotlib import pyplot as plt
 from matplotlib.axes import Axes
 from matplotlib.patches import Patch
 
+from bedchain.comparison.curves import ChainFiles
 from bedchain.errors import UserError
-from bedchain.figures.style import DOUBLE_COLUMN_IN, figure_style, save_figure
+from bedchain.figures.style import DOUBLE_COLUMN_IN, FigureFiles, figure_style
 from bedchain.files import CSV_DIGITS, read_arrays, write_csv
-from bedchain.stage import stage
+from bedchain.stage import run_stage
 from bedchain.uncertainty.bands import band
 
 PANELS = {
@@ -29,8 +30,8 @@ MIXED_COLOUR = "#888888"
 
 
 def plot_mixing(
-    mixing: Path, metrics: Path, chains: dict[str, Path], png: Path, pdf: Path, csv: Path,
-    direction: str, colours: dict[str, str], resolution_dpi: int,
+    mixing: Path, metrics: Path, chains: ChainFiles, files: FigureFiles,
+    direction: str, colours: dict[str, str]
 ) -> None:  # fmt: skip
     """Draw both groups of one direction: DEM, exact expectation and Monte Carlo of each chain.
 
@@ -38,16 +39,14 @@ def plot_mixing(
     ----------
     mixing, metrics : Path
         ``mixing.csv`` and ``metrics.csv`` of compare_mixing.
-    chains : dict of str to Path
-        ``chain_<model>.npz`` by model, for the error bars.
-    png, pdf, csv : Path
+    chains : ChainFiles
+        For the error bars.
+    files : FigureFiles
         Figure in two forms, and the numbers behind it.
     direction : {"radial", "axial"}
         Left and right (Fig. 5a), or low and up (Fig. 5b).
     colours : dict of str to str
         Colours of ``dem`` and of each model.
-    resolution_dpi : int
-        Of the png [dots per inch].
 
     Raises
     ------
@@ -57,7 +56,7 @@ def plot_mixing(
     table = pd.read_csv(mixing).query("direction == @direction")
     if table.empty:
         raise UserError(f"{mixing} has no curves of direction {direction!r}; delete it and run again")
-    table = table.merge(bands(chains), how="left", on=["time_s", "source", "group"])
+    table = table.merge(bands(chains.by_model()), how="left", on=["time_s", "source", "group"])
     table = with_realisations(table)
     shares, mixed = (_shares(pd.read_csv(metrics), when) for when in ("start", "mean"))
     with figure_style():
@@ -71,11 +70,11 @@ def plot_mixing(
         panels[0].set_ylim(max(0.0, lowest - 0.06), 1.03)
         panels[0].set_xlim(table["time_s"].min(), table["time_s"].max())
         handles, labels = panels[0].get_legend_handles_labels()
-        handles.append(Patch(color=colours[next(iter(chains))], alpha=BAND_OPACITY, linewidth=0))
+        handles.append(Patch(color=colours[chains.models[0]], alpha=BAND_OPACITY, linewidth=0))
         labels.append("95 % band of the chain")
         figure.legend(handles, labels, loc="outside upper center", ncols=4, handlelength=2.4)
-        save_figure(figure, png, pdf, resolution_dpi)
-    write_csv(table, csv)
+        files.save(figure)
+    write_csv(table, files.csv)
 
 
 def bands(chains: dict[str, Path]) -> pd.DataFrame:
@@ -177,16 +176,5 @@ def _shares(metrics: pd.DataFrame, when: str) -> dict[str, float]:
     return dict(zip(rows["quantity"].str.removeprefix(f"share_{when}_"), rows["value"], strict=True))
 
 
-if "snakemake" in globals():
-    with stage(snakemake.log[0]):
-        plot_mixing(
-            Path(snakemake.input.mixing),
-            Path(snakemake.input.metrics),
-            dict(zip(snakemake.params.models, map(Path, snakemake.input.chains), strict=True)),
-            Path(snakemake.output.png),
-            Path(snakemake.output.pdf),
-            Path(snakemake.output.csv),
-            snakemake.params.direction,
-            snakemake.params.colours,
-            snakemake.params.resolution_dpi,
-        )
+if rule := globals().get("snakemake"):
+    run_stage(plot_mixing, rule)

@@ -12,9 +12,9 @@ from matplotlib.ticker import NullFormatter
 
 from bedchain.errors import UserError
 from bedchain.figures.model_styles import BASELINE, ModelStyle, label, model_styles
-from bedchain.figures.style import DOUBLE_COLUMN_IN, LINE_COLOUR, figure_style, save_figure
+from bedchain.figures.style import DOUBLE_COLUMN_IN, LINE_COLOUR, FigureFiles, figure_style
 from bedchain.files import write_csv
-from bedchain.stage import stage
+from bedchain.stage import run_stage
 
 WINDOW = "starts"
 PANELS = {"radial": "test, left / right", "axial": "test, low / up"}
@@ -24,21 +24,18 @@ SAME = 1e-6
 
 
 def plot_pareto(
-    scores: Path, selection: Path, png: Path, pdf: Path, csv: Path,
-    baseline_cell_m: float, baseline_lag_s: float, resolution_dpi: int,
-) -> None:  # fmt: skip
+    scores: Path, selection: Path, files: FigureFiles, baseline_cell_m: float, baseline_lag_s: float
+) -> None:
     """Draw rms errors over the processor time of moving every particle, with the noise floor.
 
     Parameters
     ----------
     scores, selection : Path
         ``scores.csv`` and ``selection.csv``.
-    png, pdf, csv : Path
+    files : FigureFiles
         Figure in two forms, and the numbers behind it.
     baseline_cell_m, baseline_lag_s : float
         The case's own cells [m] and lag [s].
-    resolution_dpi : int
-        Of the png [dots per inch].
 
     Raises
     ------
@@ -66,8 +63,8 @@ def plot_pareto(
         panels[0].set_ylim(bottom=0)
         shown = [name for name in styles if (table["source"] == name).any()]
         figure.legend(handles=_legend(shown, styles), loc="outside upper center", ncols=4, handlelength=2.0)
-        save_figure(figure, png, pdf, resolution_dpi)
-    write_csv(table, csv)
+        files.save(figure)
+    write_csv(table, files.csv)
 
 
 def pareto_table(
@@ -160,15 +157,5 @@ def _legend(shown: list[str], styles: dict[str, ModelStyle]) -> list[Line2D]:
     return [*handles, chosen]
 
 
-if "snakemake" in globals():
-    with stage(snakemake.log[0]):
-        plot_pareto(
-            Path(snakemake.input.scores),
-            Path(snakemake.input.selection),
-            Path(snakemake.output.png),
-            Path(snakemake.output.pdf),
-            Path(snakemake.output.csv),
-            snakemake.params.baseline_cell_m,
-            snakemake.params.baseline_lag_s,
-            snakemake.params.resolution_dpi,
-        )
+if rule := globals().get("snakemake"):
+    run_stage(plot_pareto, rule)

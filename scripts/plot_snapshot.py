@@ -14,11 +14,11 @@ from matplotlib.cm import ScalarMappable
 from matplotlib.colors import Normalize
 
 from bedchain.dem.gas_field import GasField, gas_near
-from bedchain.figures.style import SINGLE_COLUMN_IN, close_frame, figure_style, save_figure
+from bedchain.figures.style import SINGLE_COLUMN_IN, FigureFiles, close_frame, figure_style
 from bedchain.files import write_csv
-from bedchain.stage import LOG, stage
+from bedchain.stage import LOG, run_stage
 from bedchain.trajectory.cell_store import frame_at
-from bedchain.trajectory.store import open_trajectory, read_manifest
+from bedchain.trajectory.store import BedFiles, read_manifest
 
 GAS_COLOUR_MAP = "Blues_r"
 # freeboard without particles is not shown, but for this share of the bed's height shown
@@ -36,16 +36,16 @@ TALLEST_IN = 5.0
 
 
 def plot_snapshot(
-    dem: Path, trajectory: Path, metadata: Path, png: Path, pdf: Path, csv: Path,
-    time_s: float, diameter_m: float, colour_map: str, resolution_dpi: int,
-) -> None:  # fmt: skip
+    dem: Path, bed: BedFiles, files: FigureFiles, time_s: float, diameter_m: float, colour_map: str
+) -> None:
     """Draw particles and gas of the segment's end that is nearest to a time.
 
     Parameters
     ----------
-    dem, trajectory, metadata : Path
-        ``dem.json``, ``trajectory.npy``, ``trajectory.json``.
-    png, pdf, csv : Path
+    dem : Path
+        ``dem.json``.
+    bed : BedFiles
+    files : FigureFiles
         Figure in two forms, and the particles and gas cells shown.
     time_s : float
         Wanted time [s].
@@ -53,10 +53,8 @@ def plot_snapshot(
         Particle diameter [m].
     colour_map : str
         Matplotlib colour map of the velocity.
-    resolution_dpi : int
-        Of the png [dots per inch].
     """
-    values, described = open_trajectory(trajectory, metadata)
+    values, described = bed.open()
     gas = gas_near(read_manifest(dem), dem.parent, "voidage", time_s)
     frame = np.asarray(values[frame_at(np.array(described["times_s"]), gas.time_s)], float)
     LOG.info("particles and gas at %g s", gas.time_s)
@@ -76,8 +74,8 @@ def plot_snapshot(
         panels[0].set_title(f"particles, {gas.time_s:.2f} s")
         panels[1].set_title("gas")
         panels[0].set_ylabel("z [m]")
-        save_figure(figure, png, pdf, resolution_dpi)
-    write_csv(snapshot_table(frame, gas), csv)
+        files.save(figure)
+    write_csv(snapshot_table(frame, gas), files.csv)
 
 
 def render(
@@ -106,7 +104,7 @@ def render(
     width, height = size_m
     window = [max(1, round(PIXELS_HIGH * width / height)), PIXELS_HIGH]
     radius = what.pop("radius", None)
-    plotter = pyvista.Plotter(off_screen=True, window_size=window)
+    plotter: Any = pyvista.Plotter(off_screen=True, window_size=window)
     plotter.set_background("white")
     actor = plotter.add_mesh(
         **what, scalars=field, cmap=colour_map, clim=[norm.vmin, norm.vmax],
@@ -142,7 +140,7 @@ def _panel(
         extend="both" if norm.vmin is not None and norm.vmin < 0 else "neither",
     )  # fmt: skip
     bar.set_label(label)
-    bar.outline.set_linewidth(0.5)  # type: ignore[operator]
+    bar.outline.set_linewidth(0.5)
 
 
 def snapshot_table(frame: np.ndarray, gas: GasField) -> pd.DataFrame:
@@ -166,17 +164,5 @@ def snapshot_table(frame: np.ndarray, gas: GasField) -> pd.DataFrame:
     return pd.concat([particles, cells], ignore_index=True)
 
 
-if "snakemake" in globals():
-    with stage(snakemake.log[0]):
-        plot_snapshot(
-            Path(snakemake.input.dem),
-            Path(snakemake.input.trajectory),
-            Path(snakemake.input.metadata),
-            Path(snakemake.output.png),
-            Path(snakemake.output.pdf),
-            Path(snakemake.output.csv),
-            snakemake.params.time_s,
-            snakemake.params.diameter_m,
-            snakemake.params.colour_map,
-            snakemake.params.resolution_dpi,
-        )
+if rule := globals().get("snakemake"):
+    run_stage(plot_snapshot, rule)

@@ -9,12 +9,13 @@ from matplotlib import pyplot as plt
 from matplotlib.axes import Axes
 
 from bedchain.dem.series import read_series
-from bedchain.figures.style import DOUBLE_COLUMN_IN, figure_style, save_figure
+from bedchain.figures.style import DOUBLE_COLUMN_IN, FigureFiles, figure_style
 from bedchain.files import write_csv
-from bedchain.measures.voidage import profiles
-from bedchain.stage import LOG, stage
-from bedchain.trajectory.frames import window
-from bedchain.trajectory.store import open_trajectory
+from bedchain.measures.mixing import Splits
+from bedchain.measures.voidage import Slab, profiles
+from bedchain.stage import LOG, run_stage
+from bedchain.trajectory.frames import Window
+from bedchain.trajectory.store import BedFiles
 from bedchain.uncertainty.stationarity import drift_table
 
 TITLES = {
@@ -29,54 +30,49 @@ TREND_COLOUR = "#ee6677"
 
 
 def plot_stationarity(
-    bed_series: Path, trajectory: Path, metadata: Path, stationarity: Path, png: Path, pdf: Path, csv: Path,
-    start_s: float, end_s: float, split_x_m: float, split_z_m: float,
-    row_m: float, thickness_m: float, diameter_m: float, resolution_dpi: int,
+    bed_series: Path, bed: BedFiles, stationarity: Path, files: FigureFiles,
+    window: Window, splits: Splits, row_m: float, slab: Slab,
 ) -> None:  # fmt: skip
     """Judge pressure drop (in a drum the inclination), height, shares of both sides and voidage by height.
 
     Parameters
     ----------
-    bed_series, trajectory, metadata : Path
-        ``bed_series.csv``, ``trajectory.npy``, ``trajectory.json``.
+    bed_series : Path
+        ``bed_series.csv``.
+    bed : BedFiles
     stationarity : Path
         Table of drifts to make.
-    png, pdf, csv : Path
+    files : FigureFiles
         Figure in two forms, and the series behind it.
-    start_s, end_s : float
-        Start of the learning, end of the comparison [s].
-    split_x_m, split_z_m : float
-        Lines between left and right, low and up [m].
+    window : Window
+        From the start of the learning to the end of the comparison.
+    splits : Splits
     row_m : float
         Height of a row of the voidage profile [m].
-    thickness_m, diameter_m : float
-        Of the slab, of a particle [m].
-    resolution_dpi : int
-        Of the png [dots per inch].
+    slab : Slab
     """
     series = read_series(bed_series)
-    series = series[series["time_s"].between(start_s, end_s)]
+    series = series[series["time_s"].between(window.start_s, window.end_s)]
     step_s = float(series["time_s"].diff().median())
-    store, described = open_trajectory(trajectory, metadata)
-    times_s = np.array(described["times_s"])
-    frames = window(times_s, start_s, end_s)
+    store, described = bed.open()
+    frames = window.frames(np.array(described["times_s"]))
     rows = round(described["height_m"] / row_m)
     edges = np.linspace(0, described["height_m"], rows + 1)
-    profile = profiles(store[frames, 1], edges, described["width_m"], thickness_m, diameter_m)
+    profile = profiles(store[frames, 1], edges, described["width_m"], slab.thickness_m, slab.diameter_m)
     interval_s = described["frame_interval_s"]
     first, unit = ("pressure_drop", "Pa") if "pressure_drop_Pa" in series else ("surface_angle", "rad")
     seen = {
         first: (unit, step_s, series[f"{first}_{unit}"].to_numpy()),
         "particle_height": ("m", step_s, series["mean_height_m"].to_numpy()),
-        "share_left": ("1", interval_s, (store[frames, 0] < split_x_m).mean(axis=1)),
-        "share_low": ("1", interval_s, (store[frames, 1] < split_z_m).mean(axis=1)),
+        "share_left": ("1", interval_s, (store[frames, 0] < splits.split_x_m).mean(axis=1)),
+        "share_low": ("1", interval_s, (store[frames, 1] < splits.split_z_m).mean(axis=1)),
     }
     middles = (edges[1:] + edges[:-1]) / 2
     table = drift_table(seen, profile, middles, interval_s)
     shown = pd.concat(
         [
             pd.DataFrame(
-                {"quantity": name, "time_s": start_s + step * np.arange(len(values)), "value": values}
+                {"quantity": name, "time_s": window.start_s + step * np.arange(len(values)), "value": values}
             )
             for name, (_, step, values) in seen.items()
         ]
@@ -90,9 +86,9 @@ def plot_stationarity(
             if at >= 2:
                 axes.set_xlabel("time [s]")
         _draw_profile(figure.add_subplot(grid[:, 2]), profile, middles, table)
-        save_figure(figure, png, pdf, resolution_dpi)
+        files.save(figure)
     write_csv(table, stationarity)
-    write_csv(shown, csv)
+    write_csv(shown, files.csv)
     drifting = table[table["stationary_1"] == 0]
     LOG.info(
         "%d of %d drifts are more than chance: %s", len(drifting), len(table), ", ".join(drifting["quantity"])
@@ -136,22 +132,5 @@ def _draw_profile(axes: Axes, profile: np.ndarray, middles: np.ndarray, table: p
     axes.legend(loc="upper left")
 
 
-if "snakemake" in globals():
-    with stage(snakemake.log[0]):
-        plot_stationarity(
-            Path(snakemake.input.bed_series),
-            Path(snakemake.input.trajectory),
-            Path(snakemake.input.metadata),
-            Path(snakemake.output.stationarity),
-            Path(snakemake.output.png),
-            Path(snakemake.output.pdf),
-            Path(snakemake.output.csv),
-            snakemake.params.start_s,
-            snakemake.params.end_s,
-            snakemake.params.split_x_m,
-            snakemake.params.split_z_m,
-            snakemake.params.row_m,
-            snakemake.params.thickness_m,
-            snakemake.params.diameter_m,
-            snakemake.params.resolution_dpi,
-        )
+if rule := globals().get("snakemake"):
+    run_stage(plot_stationarity, rule)

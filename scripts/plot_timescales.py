@@ -2,6 +2,7 @@
 """Implied timescales of the chains over the lag: level where a chain is Markov, unseen below the lag."""
 
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import pandas as pd
@@ -11,9 +12,9 @@ from matplotlib.lines import Line2D
 from matplotlib.ticker import FuncFormatter, NullFormatter
 
 from bedchain.errors import UserError
-from bedchain.figures.style import DOUBLE_COLUMN_IN, LINE_COLOUR, figure_style, save_figure
+from bedchain.figures.style import DOUBLE_COLUMN_IN, LINE_COLOUR, FigureFiles, figure_style
 from bedchain.files import write_csv
-from bedchain.stage import stage
+from bedchain.stage import run_stage
 
 # a pair of complex eigenvalues has one timescale; the same number twice up to the digits of the table
 PAIR = 1e-6
@@ -25,21 +26,17 @@ UNSEEN_COLOUR, LEGEND_COLOUR = "#d9d9d9", "#444444"
 TICKS_S = (0.01, 0.02, 0.05, 0.1, 0.2, 0.5, 1, 2, 5, 10, 20)
 
 
-def plot_timescales(
-    diagnostics: Path, png: Path, pdf: Path, csv: Path, colours: dict[str, str], resolution_dpi: int
-) -> None:
+def plot_timescales(diagnostics: Path, files: FigureFiles, colours: dict[str, str]) -> None:
     """Draw the slowest timescales of each model over the lag, and where they cannot be seen.
 
     Parameters
     ----------
     diagnostics : Path
         ``diagnostics.csv`` of diagnose_chains.
-    png, pdf, csv : Path
+    files : FigureFiles
         Figure in two forms, and the numbers behind it.
     colours : dict of str to str
         Colour of each model; those without timescales in the table (no matrix) are left out.
-    resolution_dpi : int
-        Of the png [dots per inch].
 
     Raises
     ------
@@ -76,8 +73,8 @@ def plot_timescales(
             )  # fmt: skip
         panels[0, 0].set_ylabel("implied timescale [s]")
         figure.legend(handles=_legend(), loc="outside upper center", ncols=5, handlelength=2.8)
-        save_figure(figure, png, pdf, resolution_dpi)
-    write_csv(table, csv)
+        files.save(figure)
+    write_csv(table, files.csv)
 
 
 def processes(table: pd.DataFrame) -> pd.DataFrame:
@@ -123,20 +120,13 @@ def _draw_model(axes: Axes, table: pd.DataFrame, colour: str) -> None:
 
 
 def _legend() -> list[Line2D]:
-    names, grey = ("slowest process", "second", "third"), {"color": LEGEND_COLOUR, "ms": 4.5}
+    names = ("slowest process", "second", "third")
+    grey: dict[str, Any] = {"color": LEGEND_COLOUR, "ms": 4.5}
     styles = zip(names, MARKERS, DASHES, strict=True)
     handles = [Line2D([], [], label=name, marker=marker, ls=dash, **grey) for name, marker, dash in styles]
     handles.append(Line2D([], [], label="open: goes round", marker="o", ls="none", mfc="white", **grey))
     return [*handles, Line2D([], [], label="95 % band", marker="|", ls="none", color=LEGEND_COLOUR, ms=9)]
 
 
-if "snakemake" in globals():
-    with stage(snakemake.log[0]):
-        plot_timescales(
-            Path(snakemake.input.diagnostics),
-            Path(snakemake.output.png),
-            Path(snakemake.output.pdf),
-            Path(snakemake.output.csv),
-            snakemake.params.colours,
-            snakemake.params.resolution_dpi,
-        )
+if rule := globals().get("snakemake"):
+    run_stage(plot_timescales, rule)

@@ -11,9 +11,9 @@ from matplotlib.axes import Axes
 from matplotlib.ticker import LogLocator, NullFormatter, NullLocator
 
 from bedchain.errors import UserError
-from bedchain.figures.style import DOUBLE_COLUMN_IN, figure_style, save_figure
+from bedchain.figures.style import DOUBLE_COLUMN_IN, FigureFiles, figure_style
 from bedchain.files import write_csv
-from bedchain.stage import stage
+from bedchain.stage import run_stage
 
 FACTORIAL, ORDER = "cells and lag", "order"
 POINTS = ("window", "window start", "cell shape", "estimator", ORDER)
@@ -24,17 +24,15 @@ NAME_PLACES = {"fast": (-4, -16), "balanced": (2, 12), "accurate": (8, -12)}
 MM = 1e3
 
 
-def plot_tradeoff(tradeoff: Path, png: Path, pdf: Path, csv: Path, resolution_dpi: int) -> None:
+def plot_tradeoff(tradeoff: Path, files: FigureFiles) -> None:
     """Draw the Pareto front of all cells and lags, their errors as a map, and what else was varied.
 
     Parameters
     ----------
     tradeoff : Path
         ``tradeoff.csv``.
-    png, pdf, csv : Path
+    files : FigureFiles
         Figure in two forms, and the numbers behind it.
-    resolution_dpi : int
-        Of the png [dots per inch].
 
     Raises
     ------
@@ -58,8 +56,8 @@ def plot_tradeoff(tradeoff: Path, png: Path, pdf: Path, csv: Path, resolution_dp
         _draw_points(panels[1, 2], pd.concat([own, *(table[table["axis"] == axis] for axis in POINTS)]), unit)
         handles, names = panels[0, 0].get_legend_handles_labels()
         figure.legend(handles, names, loc="outside upper center", ncols=7, fontsize=6, handlelength=1.6)
-        save_figure(figure, png, pdf, resolution_dpi)
-    write_csv(table, csv)
+        files.save(figure)
+    write_csv(table, files.csv)
 
 
 def shown_rows(table: pd.DataFrame) -> pd.DataFrame:
@@ -208,12 +206,5 @@ def _draw_points(axes: Axes, table: pd.DataFrame, unit: str) -> None:
     axes.set_axisbelow(True)
 
 
-if "snakemake" in globals():
-    with stage(snakemake.log[0]):
-        plot_tradeoff(
-            Path(snakemake.input.tradeoff),
-            Path(snakemake.output.png),
-            Path(snakemake.output.pdf),
-            Path(snakemake.output.csv),
-            snakemake.params.resolution_dpi,
-        )
+if rule := globals().get("snakemake"):
+    run_stage(plot_tradeoff, rule)

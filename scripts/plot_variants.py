@@ -2,6 +2,7 @@
 """What each choice in simulating a bed changes, in noise floors, and what it costs."""
 
 from pathlib import Path
+from typing import Any
 
 import matplotlib as mpl
 import numpy as np
@@ -12,9 +13,9 @@ from matplotlib.axis import Axis
 from matplotlib.ticker import LogLocator, NullLocator
 
 from bedchain.errors import UserError
-from bedchain.figures.style import DOUBLE_COLUMN_IN, figure_style, save_figure
+from bedchain.figures.style import DOUBLE_COLUMN_IN, FigureFiles, figure_style
 from bedchain.files import write_csv
-from bedchain.stage import stage
+from bedchain.stage import run_stage
 from bedchain.studies.pareto import pareto_front
 
 # heads of the columns; the first two have no sign
@@ -40,17 +41,15 @@ MOST_FLOORS = 15.0
 REASON_LETTERS = 110
 
 
-def plot_variants(tradeoff: Path, png: Path, pdf: Path, csv: Path, resolution_dpi: int) -> None:
+def plot_variants(tradeoff: Path, files: FigureFiles) -> None:
     """Draw one line a variant: its change of each observable, and its cost over that of the bed itself.
 
     Parameters
     ----------
     tradeoff : Path
         ``tradeoff.csv``.
-    png, pdf, csv : Path
+    files : FigureFiles
         Figure in two forms, and the numbers behind it.
-    resolution_dpi : int
-        Of the png [dots per inch].
 
     Raises
     ------
@@ -63,13 +62,14 @@ def plot_variants(tradeoff: Path, png: Path, pdf: Path, csv: Path, resolution_dp
     with figure_style():
         lines_in = 1.2 + LINE_IN * len(table)
         figure = plt.figure(figsize=(DOUBLE_COLUMN_IN, lines_in + FRONT_IN))
-        upper, lower = figure.subfigures(2, 1, height_ratios=[lines_in, FRONT_IN])
+        parts: Any = figure.subfigures(2, 1, height_ratios=[lines_in, FRONT_IN])
+        upper, lower = parts
         axes, costs = upper.subplots(1, 2, width_ratios=[5, 1], sharey=True)
         _draw_changes(axes, table)
         _draw_costs(costs, table)
         _draw_front(lower.subplots(), table)
-        save_figure(figure, png, pdf, resolution_dpi)
-    write_csv(table, csv)
+        files.save(figure)
+    write_csv(table, files.csv)
 
 
 def shown_rows(table: pd.DataFrame) -> pd.DataFrame:
@@ -167,12 +167,5 @@ def _label_parts(axis: Axis, parts: tuple[float, ...]) -> None:
     axis.set_minor_locator(NullLocator())
 
 
-if "snakemake" in globals():
-    with stage(snakemake.log[0]):
-        plot_variants(
-            Path(snakemake.input.tradeoff),
-            Path(snakemake.output.png),
-            Path(snakemake.output.pdf),
-            Path(snakemake.output.csv),
-            snakemake.params.resolution_dpi,
-        )
+if rule := globals().get("snakemake"):
+    run_stage(plot_variants, rule)

@@ -3,6 +3,7 @@
 
 import json
 import math
+from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
@@ -14,8 +15,10 @@ from bedchain.comparison.curves import curve_table
 from bedchain.errors import UserError
 from bedchain.figures.model_styles import BASELINE
 from bedchain.files import write_arrays, write_csv
+from bedchain.measures.batch import Batch
 from bedchain.measures.lagrangian import Statistics
-from bedchain.stage import LOG, stage
+from bedchain.measures.mixing import Splits
+from bedchain.stage import LOG, run_stage
 from bedchain.studies.records import only, stamp
 from bedchain.studies.scan import Task, named
 from bedchain.studies.scores.candidates import Candidate, candidates
@@ -23,53 +26,89 @@ from bedchain.studies.scores.held_out import HeldOut, hold_out
 from bedchain.studies.scores.rows import dem_rows, score_rows
 from bedchain.studies.scores.selection import select
 from bedchain.studies.scores.tested_chain import Trial, batch_shares, dem_statistics, try_out
-from bedchain.trajectory.frames import lag_frames, window
+from bedchain.trajectory.frames import Window, lag_frames
 from bedchain.trajectory.grid import Grid
-from bedchain.trajectory.realisations import open_realisation, open_repeats
+from bedchain.trajectory.realisations import open_bed, open_repeats
 from bedchain.trajectory.regrid import regrid
+from bedchain.trajectory.store import BedFiles
 from bedchain.uncertainty.bands import memory
 
 COLUMNS = ["model", "cell_m", "lag_s", "options", "quantity", "time_s", "value", "ci_low", "ci_high",
            "noise_floor", "unit", "window"]  # fmt: skip
 
 
+@dataclass(frozen=True)
+class ScoreFiles:
+    """Files to make.
+
+    Attributes
+    ----------
+    scores : Path
+        Scores of the chosen settings and of the case's own static chain.
+    selection : Path
+        Validation of all candidates.
+    mixing, lagrangian : Path
+        Mixing curves of one start; Lagrangian curves.
+    best : Path
+        The best model's batch.
+    """
+
+    scores: Path
+    selection: Path
+    mixing: Path
+    lagrangian: Path
+    best: Path
+
+
+@dataclass(frozen=True)
+class Observed:
+    """Marked groups and batch that chains and DEM are compared by."""
+
+    splits: Splits
+    batch: Batch
+
+
+@dataclass(frozen=True)
+class CaseChains:
+    """The case's own chains.
+
+    Attributes
+    ----------
+    columns, rows : int
+        Of their grid.
+    lag_s : float
+        Of a step [s].
+    estimator : {"literal", "per_step", "pooled"}
+        How counts become probabilities.
+    seed : int
+        Of the Monte Carlo runs.
+    diameter_m : float
+        Of a particle: no cell is smaller [m].
+    """
+
+    columns: int
+    rows: int
+    lag_s: float
+    estimator: str
+    seed: int
+    diameter_m: float
+
+
 def score_models(
-    trajectory: Path, metadata: Path, repeats: list[Path],
-    scores: Path, selection: Path, mixing: Path, lagrangian: Path, best: Path,
-    learning: dict[str, float], comparison: dict[str, float], columns: int, rows: int, diameter_m: float,
-    lag_s: float, estimator: str, split_x_m: float, split_z_m: float,
-    batch_height_m: float, moments_s: list[float], seed: int,
-    tried: list[Candidate] | None = None,
+    bed: BedFiles, repeats: list[Path], files: ScoreFiles, learning: Window, comparison: Window,
+    observed: Observed, case: CaseChains, tried: list[Candidate] | None = None,
 ) -> None:  # fmt: skip
     """Choose the setting of each model inside the learning window, learn again, and test once.
 
     Parameters
     ----------
-    trajectory, metadata : Path
-        ``trajectory.npy`` and ``trajectory.json``.
+    bed : BedFiles
     repeats : list of Path
         ``trajectory.npy`` of each repeat of the run, its ``trajectory.json`` beside it; may be empty.
-    scores, selection, mixing, lagrangian, best : Path
-        Files to make: scores of the chosen settings and of the case's own static chain; validation of all
-        candidates; curves of one start; Lagrangian curves; the best model's batch.
-    learning, comparison : dict of str to float
-        ``start_s`` and ``end_s`` of the windows [s].
-    columns, rows : int
-        The case's cells.
-    diameter_m : float
-        Of a particle: no cell is smaller [m].
-    lag_s : float
-        The case's lag [s].
-    estimator : {"literal", "per_step", "pooled"}
-        How counts become probabilities.
-    split_x_m, split_z_m : float
-        Lines between left and right, low and up [m].
-    batch_height_m : float
-        Height of the batch [m].
-    moments_s : list of float
-        When the batch is looked at [s].
-    seed : int
-        Of the Monte Carlo runs.
+    files : ScoreFiles
+    learning, comparison : Window
+    observed : Observed
+    case : CaseChains
     tried : list of Candidate, optional
         All settings of all models by default.
 
@@ -78,41 +117,41 @@ def score_models(
     UserError, DataError
         A window or a repeat lacks frames; no model could be validated.
     """
-    run = open_realisation("the run", trajectory, metadata)
+    run = open_bed(bed)
     runs = [run, *open_repeats(repeats, run)]
-    grid = Grid(run.width_m, run.height_m, columns, rows)
-    start_s, end_s = comparison["start_s"], comparison["end_s"]
-    which = window(run.times_s, learning["start_s"], learning["end_s"])
-    compared = window(run.times_s, start_s, end_s)
+    grid = Grid(run.width_m, run.height_m, case.columns, case.rows)
+    which = learning.frames(run.times_s)
+    compared = comparison.frames(run.times_s)
     if compared.start + 1 < which.stop:
         raise UserError("comparison.start_s is inside the learning window: take at least learning.end_s")
-    splits, lag = (split_x_m, split_z_m), lag_frames(lag_s, run.interval_s)
-    spacing = math.ceil(memory(run.frames(grid, which), split_x_m))
-    task = Task(grid, splits, estimator, spacing, compared.stop - 1 - compared.start)
-    tried = candidates(registry.LEARNERS, grid, lag, diameter_m) if tried is None else tried
-    about = {"task": repr(task), "learning": learning, "comparison": comparison}
-    kept = only(scores.parent / "candidates" / stamp([trajectory, metadata], about))
+    splits, batch = observed.splits, observed.batch
+    lag = lag_frames(case.lag_s, run.interval_s)
+    spacing = math.ceil(memory(run.frames(grid, which), splits.split_x_m))
+    task = Task(grid, splits, case.estimator, spacing, compared.stop - 1 - compared.start)
+    tried = candidates(registry.LEARNERS, grid, lag, case.diameter_m) if tried is None else tried
+    about: dict[str, object] = {"task": repr(task), "learning": learning, "comparison": comparison}
+    kept = only(files.scores.parent / "candidates" / stamp([bed.trajectory, bed.metadata], about))
     table = select(tried, run, which, task, kept)
     chosen = {one.name: one for one, mark in zip(tried, table["chosen"], strict=True) if mark}
     winner = table.loc[table["best"] == 1, "model"].item()
-    held = hold_out(runs, grid, (start_s, end_s), spacing, splits, batch_height_m, moments_s)
+    held = hold_out(runs, grid, comparison, spacing, splits, batch.batch_height_m, batch.moments_s)
     LOG.info("%d starts, %d frames apart; %d repeats; noise floor: spread between %s", len(held.starts),
              spacing, len(repeats), "runs" if held.repeated else "starts")  # fmt: skip
     dem = [dem_statistics(held, number) for number in range(len(runs))]
     found = [{"model": "dem"} | row for row in dem_rows(held, dem)]
     trials: dict[str, Trial] = {}
-    for name, one in {**chosen, BASELINE: Candidate("static", columns, rows, lag)}.items():
+    for name, one in {**chosen, BASELINE: Candidate("static", case.columns, case.rows, lag)}.items():
         LOG.info("test of %s: %s", name, one.key)
-        trials[name] = try_out(one, which, held, task, seed)
+        trials[name] = try_out(one, which, held, task, case.seed)
         if name != BASELINE or one not in chosen.values():
             labels = named(one, grid, run.interval_s)
             found += [labels | row for row in score_rows(trials[name], held)]
-    write_csv(table, selection)
-    write_csv(pd.DataFrame(found).reindex(columns=COLUMNS), scores)
-    write_csv(mixing_table(held, trials, winner), mixing)
+    write_csv(table, files.selection)
+    write_csv(pd.DataFrame(found).reindex(columns=COLUMNS), files.scores)
+    write_csv(mixing_table(held, trials, winner), files.mixing)
     statistics = {name: [one for one, _ in trial.lagrangian] for name, trial in trials.items()}
-    write_csv(lagrangian_table({"dem": dem, **statistics}), lagrangian)
-    write_arrays(best, batch_of_best(trials[winner], held, winner, chosen[winner], seed))
+    write_csv(lagrangian_table({"dem": dem, **statistics}), files.lagrangian)
+    write_arrays(files.best, batch_of_best(trials[winner], held, winner, chosen[winner], case.seed))
 
 
 def mixing_table(held: HeldOut, trials: dict[str, Trial], winner: str) -> pd.DataFrame:
@@ -176,27 +215,5 @@ def batch_of_best(trial: Trial, held: HeldOut, model: str, one: Candidate, seed:
     }
 
 
-if "snakemake" in globals():
-    with stage(snakemake.log[0]):
-        score_models(
-            Path(snakemake.input.trajectory),
-            Path(snakemake.input.metadata),
-            [Path(file) for file in snakemake.input.repeats],
-            Path(snakemake.output.scores),
-            Path(snakemake.output.selection),
-            Path(snakemake.output.mixing),
-            Path(snakemake.output.lagrangian),
-            Path(snakemake.output.best),
-            snakemake.params.learning,
-            snakemake.params.comparison,
-            snakemake.params.columns,
-            snakemake.params.rows,
-            snakemake.params.diameter_m,
-            snakemake.params.lag_s,
-            snakemake.params.estimator,
-            snakemake.params.split_x_m,
-            snakemake.params.split_z_m,
-            snakemake.params.batch_height_m,
-            snakemake.params.moments_s,
-            snakemake.params.seed,
-        )
+if rule := globals().get("snakemake"):
+    run_stage(score_models, rule)

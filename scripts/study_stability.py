@@ -35,10 +35,10 @@ def sources(settings: list[Setting]) -> dict[str, list[Path]]:
     """Files that the verdicts of each group depend on: the solvers' or the chains'."""
     decks = source_files("liggghts_inputs", "in.settle", "in.fluidize", "in.contact", "include/*.in")
     gas = source_files("openfoam_case", "0.orig/*", "constant/*", "system/*")
-    beds = [SOLVER, "cases/case.schema.yaml", *decks, *gas]
+    beds = [str(SOLVER), "cases/case.schema.yaml", *decks, *gas]
     for name in ("bed_runs", "collisions"):
         beds += [str(STABILITY / f"{name}.py"), *files_behind(STABILITY / f"{name}.py")]
-    chains = []
+    chains: list[str] = []
     for name in ("chain_runs", "chain_settings"):
         chains += [str(STABILITY / f"{name}.py"), *files_behind(STABILITY / f"{name}.py")]
     files = {True: chains, False: beds}

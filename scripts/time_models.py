@@ -12,14 +12,16 @@ import pandas as pd
 from bedchain.chains import counting, dynamic, registry
 from bedchain.chains.chain import Chain
 from bedchain.chains.estimators import transition_matrix
+from bedchain.chains.registry import ModelSettings
 from bedchain.errors import UserError
 from bedchain.files import write_csv
+from bedchain.measures.mixing import Splits
 from bedchain.meter import forget_peak, peak_memory_mb
-from bedchain.stage import LOG, stage
-from bedchain.trajectory.frames import Frames, lag_frames, whole_steps
+from bedchain.stage import LOG, run_stage
+from bedchain.trajectory.frames import Frames, Lag, Window, whole_steps
 from bedchain.trajectory.grid import Grid
-from bedchain.trajectory.realisations import open_realisation
-from bedchain.trajectory.store import read_manifest
+from bedchain.trajectory.realisations import open_bed
+from bedchain.trajectory.store import BedFiles, read_manifest
 
 # a median of many repeats where they are short, of a few where one takes seconds
 REPEATS = 15
@@ -30,44 +32,36 @@ Row = dict[str, Any]
 
 
 def time_models(
-    dem: Path, trajectory: Path, metadata: Path, cells: Path, transitions: dict[str, Path], timing: Path,
-    learn_start_s: float, learn_end_s: float, start_s: float, end_s: float,
-    estimator: str, split_x_m: float, split_z_m: float, seed: int, options: dict[str, Any] | None = None,
+    dem: Path, bed: BedFiles, transitions: list[Path], timing: Path,
+    learning: Window, comparison: Window, splits: Splits, settings: ModelSettings,
 ) -> None:  # fmt: skip
     """Time counting, estimating, exact propagation and Monte Carlo of each chain, beside the DEM.
 
     Parameters
     ----------
-    dem, trajectory, metadata, cells : Path
-        ``dem.json``, ``trajectory.npy``, ``trajectory.json``, ``cells.npz``.
-    transitions : dict of str to Path
-        ``transitions_<model>.npz`` by model.
+    dem : Path
+        ``dem.json``.
+    bed : BedFiles
+    transitions : list of Path
+        ``transitions_<model>.npz`` of each model.
     timing : Path
         Gets stage, wall_s, cpu_s, peak_rss_mb, work, work_unit; medians of repeats, data in memory, compiled.
-    learn_start_s, learn_end_s, start_s, end_s : float
-        The learning and the comparison window [s].
-    estimator : {"literal", "per_step", "pooled"}
-        How counts become probabilities.
-    split_x_m, split_z_m : float
-        Lines between left and right, low and up [m].
-    seed : int
-        Of the Monte Carlo runs.
-    options : dict of str to dict, optional
-        Settings of each model only.
+    learning, comparison : Window
+    splits : Splits
+    settings : ModelSettings
+        Options by model.
     """
-    bed = open_realisation("the run", trajectory, metadata, cells)
-    rows = [dem_row(read_manifest(dem), start_s, end_s)]
-    learning = in_memory(bed.window(learn_start_s, learn_end_s))
-    comparison = bed.window(start_s, end_s)
-    for model, path in transitions.items():
+    run = open_bed(bed)
+    rows = [dem_row(read_manifest(dem), *comparison)]
+    learned, compared = in_memory(run.window(learning)), run.window(comparison)
+    for path in transitions:
         chain = registry.load(path)
-        lag = lag_frames(chain.lag_s, comparison.interval_s)
-        start = in_memory(bed.up_to(start_s, lag))
-        steps = whole_steps(len(comparison.times_s), lag)
-        rows += learning_rows(
-            model, learning, bed.grid, lag, chain.lag_s, estimator, (options or {}).get(model, {})
-        )
-        rows += running_rows(model, chain, start, steps, (split_x_m, split_z_m), seed)
+        model, lag = chain.name, Lag.of(chain.lag_s, compared.interval_s)
+        start = in_memory(run.up_to(comparison.start_s, lag.frames))
+        steps = whole_steps(len(compared.times_s), lag.frames)
+        options = settings.options.get(model, {})
+        rows += learning_rows(model, learned, run.grid, lag, settings.estimator, options)
+        rows += running_rows(model, chain, start, steps, splits, settings.seed)
     write_csv(pd.DataFrame(rows), timing)
     for row in rows:
         LOG.info("%-22s %.4g s", row["stage"], row["wall_s"])
@@ -107,7 +101,7 @@ def dem_row(manifest: dict[str, Any], start_s: float, end_s: float) -> Row:
 
 
 def learning_rows(
-    model: str, learning: Frames, grid: Grid, lag: int, lag_s: float, estimator: str, options: dict[str, Any]
+    model: str, learning: Frames, grid: Grid, lag: Lag, estimator: str, options: dict[str, Any]
 ) -> list[Row]:
     """Learning of one chain; of those of the paper counting and estimating apart.
 
@@ -117,10 +111,8 @@ def learning_rows(
     learning : Frames
         The learning window, in memory.
     grid : Grid
-    lag : int
-        Frames in a step.
-    lag_s : float
-        The same [s].
+    lag : Lag
+        Of a step.
     estimator : str
     options : dict
         Settings of this model only.
@@ -130,28 +122,29 @@ def learning_rows(
     list of dict
     """
     cells, n_cells = learning.cells, grid.n_cells
-    moves = (len(cells) - lag) * cells.shape[1]
+    moves = (len(cells) - lag.frames) * cells.shape[1]
     count: Callable[[], Any]
     if model == "static":
-        count = lambda: counting.count_moves(cells, n_cells, lag)  # noqa: E731
+        count = lambda: counting.count_moves(cells, n_cells, lag.frames)  # noqa: E731
         counts = count()
         estimate: Callable[[], Any] = lambda: transition_matrix(counts, estimator)  # noqa: E731
     elif model != "dynamic":
-        learn = lambda: registry.learn(model, learning, grid, lag, estimator, **options)  # noqa: E731
+        learn = lambda: registry.learn(model, learning, grid, lag.frames, estimator, **options)  # noqa: E731
         return [measured(f"{model}_learn", learn, moves, "particle moves")]
     else:
-        count = lambda: (counting.count_pairs(cells, n_cells, lag), counting.count_moves(cells, n_cells, lag))  # noqa: E731
+        count = lambda: (  # noqa: E731
+            counting.count_pairs(cells, n_cells, lag.frames),
+            counting.count_moves(cells, n_cells, lag.frames),
+        )
         double, single = count()
-        estimate = lambda: dynamic.from_counts(double, single, grid, lag_s, estimator)  # noqa: E731
+        estimate = lambda: dynamic.from_counts(double, single, grid, lag.seconds, estimator)  # noqa: E731
     return [
         measured(f"{model}_count", count, moves, "particle moves"),
         measured(f"{model}_matrix", estimate, n_cells, "cells"),
     ]
 
 
-def running_rows(
-    model: str, chain: Chain, start: Frames, steps: int, splits: tuple[float, float], seed: int
-) -> list[Row]:
+def running_rows(model: str, chain: Chain, start: Frames, steps: int, splits: Splits, seed: int) -> list[Row]:
     """Exact mixing curves, and a Monte Carlo of every particle, over the comparison window.
 
     Parameters
@@ -162,8 +155,7 @@ def running_rows(
         Up to the start of the window, in memory.
     steps : int
         Steps of the chain.
-    splits : (float, float)
-        Lines between left and right, low and up [m].
+    splits : Splits
     seed : int
 
     Returns
@@ -203,7 +195,8 @@ def measured(name: str, kernel: Callable[[], Any], work: float, work_unit: str) 
     kernel()
     if not forget_peak():
         LOG.info("the peak of the memory use cannot be reset here: it is that of the process so far")
-    wall, cpu = [], []
+    wall: list[float] = []
+    cpu: list[float] = []
     while len(wall) < FEWEST or (len(wall) < REPEATS and sum(wall) < ENOUGH_S):
         begin = time.perf_counter(), time.process_time()
         kernel()
@@ -217,26 +210,11 @@ def measured(name: str, kernel: Callable[[], Any], work: float, work_unit: str) 
 
 def in_memory(frames: Frames) -> Frames:
     """Frames copied out of their memory maps, so that no disk is timed."""
-    rest = (frames.x_m, frames.z_m, np.ascontiguousarray(frames.cells), frames.vx_m_s, frames.vz_m_s)
-    return Frames(np.array(frames.times_s), *(None if array is None else np.array(array) for array in rest))
+    vx, vz = (None if array is None else np.array(array) for array in (frames.vx_m_s, frames.vz_m_s))
+    return Frames(
+        np.array(frames.times_s), np.array(frames.x_m), np.array(frames.z_m), np.array(frames.cells), vx, vz
+    )
 
 
-if "snakemake" in globals():
-    with stage(snakemake.log[0]):
-        time_models(
-            Path(snakemake.input.dem),
-            Path(snakemake.input.trajectory),
-            Path(snakemake.input.metadata),
-            Path(snakemake.input.cells),
-            dict(zip(snakemake.params.models, map(Path, snakemake.input.transitions), strict=True)),
-            Path(snakemake.output.timing),
-            snakemake.params.learning["start_s"],
-            snakemake.params.learning["end_s"],
-            snakemake.params.comparison["start_s"],
-            snakemake.params.comparison["end_s"],
-            snakemake.params.estimator,
-            snakemake.params.split_x_m,
-            snakemake.params.split_z_m,
-            snakemake.params.seed,
-            snakemake.params.options,
-        )
+if rule := globals().get("snakemake"):
+    run_stage(time_models, rule)

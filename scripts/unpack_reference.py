@@ -10,22 +10,22 @@ import numpy as np
 import pandas as pd
 
 from bedchain.files import complete, write_csv, write_npy_header, write_text
-from bedchain.stage import LOG, stage
+from bedchain.stage import LOG, run_stage
 from bedchain.trajectory import archive
 from bedchain.trajectory.packed_positions import read_levels, with_velocities
 from bedchain.trajectory.store import STORED, trajectory_metadata
 
 
 def unpack_reference(
-    folder: Path, dem: Path, bed_series: Path, gas: Path, trajectory: Path, metadata: Path,
+    provenance: Path, dem: Path, bed_series: Path, gas: Path, trajectory: Path, metadata: Path,
     repeats: Sequence[Path],
 ) -> None:  # fmt: skip
     """Check the archive's files and write what a simulation would have left behind.
 
     Parameters
     ----------
-    folder : Path
-        ``cases/<case>/reference``.
+    provenance : Path
+        ``provenance.json`` of the archive, ``cases/<case>/reference``.
     dem, bed_series, gas, trajectory, metadata : Path
         ``dem.json``, ``bed_series.csv``, ``gas.npz``, ``trajectory.npy``, ``trajectory.json`` to make;
         velocities are differences of the positions of the frames before and after.
@@ -37,6 +37,7 @@ def unpack_reference(
     UserError
         A file is missing or corrupted; nothing is written then.
     """
+    folder = provenance.parent
     found = archive.read_provenance(folder)
     archive.check_files(folder, found)
     step_s, interval_s = found["dem"]["dem_step_s"], found["dem"]["frame_interval_s"]
@@ -62,14 +63,5 @@ def unpack_reference(
     LOG.info("%d frames of %d particles and %d repeats from %s", len(frames), number, len(repeats), folder)
 
 
-if "snakemake" in globals():
-    with stage(snakemake.log[0]):
-        unpack_reference(
-            Path(snakemake.params.folder),
-            Path(snakemake.output.dem),
-            Path(snakemake.output.bed_series),
-            Path(snakemake.output.gas),
-            Path(snakemake.output.trajectory),
-            Path(snakemake.output.metadata),
-            [Path(file) for file in snakemake.output.repeats],
-        )
+if rule := globals().get("snakemake"):
+    run_stage(unpack_reference, rule)

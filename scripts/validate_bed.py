@@ -7,12 +7,13 @@ import numpy as np
 import pandas as pd
 from matplotlib import pyplot as plt
 
-from bedchain.figures.style import DOUBLE_COLUMN_IN, LINE_COLOUR, figure_style, save_figure
+from bedchain.figures.style import DOUBLE_COLUMN_IN, LINE_COLOUR, FigureFiles, figure_style
 from bedchain.files import write_csv
-from bedchain.stage import LOG, stage
+from bedchain.measures.voidage import Slab
+from bedchain.stage import LOG, run_stage
 from bedchain.studies.validation import Bed, compare, read_points, simulated
-from bedchain.trajectory.frames import window
-from bedchain.trajectory.store import open_trajectory
+from bedchain.trajectory.frames import Window
+from bedchain.trajectory.store import BedFiles
 
 AIMS = {"voidage_error_rms": 0.05, "particle_velocity_error_rms": 0.04}
 FINE_POINTS = 81  # of the drawn curve
@@ -21,7 +22,7 @@ SIMULATED = "#0077bb"
 PANEL_IN, LEGEND_IN = 1.9, 0.3
 
 
-def draw(table: pd.DataFrame, curves: pd.DataFrame, png: Path, pdf: Path, resolution_dpi: int) -> None:
+def draw(table: pd.DataFrame, curves: pd.DataFrame, files: FigureFiles) -> None:
     """A row of panels for each quantity, one for each height: measured points, simulated curve and band."""
     rows = [list(points.groupby("height_m")) for _, points in table.groupby("quantity", sort=False)]
     size = DOUBLE_COLUMN_IN, PANEL_IN * len(rows) + LEGEND_IN
@@ -42,44 +43,41 @@ def draw(table: pd.DataFrame, curves: pd.DataFrame, png: Path, pdf: Path, resolu
             for axis in panels[1:]:
                 axis.sharey(panels[0])
         figure.legend(*axes[0, 0].get_legend_handles_labels(), loc="outside upper center", ncols=3)
-        save_figure(figure, png, pdf, resolution_dpi)
+        files.save(figure)
 
 
 def validate_bed(
-    trajectory: Path, metadata: Path, points: Path,
-    table: Path, metrics: Path, png: Path, pdf: Path, csv: Path,
-    start_s: float, end_s: float, diameter_m: float, width_m: float, thickness_m: float, resolution_dpi: int,
+    bed: BedFiles, points: Path, table: Path, metrics: Path, files: FigureFiles,
+    window: Window, width_m: float, slab: Slab,
 ) -> None:  # fmt: skip
     """Average the bed over a window as the measurement does, and put both side by side.
 
     Parameters
     ----------
-    trajectory, metadata : Path
-        ``trajectory.npy``, ``trajectory.json``.
+    bed : BedFiles
     points : Path
         Measured points, ``cases/<case>/measured.csv``.
     table, metrics : Path
         Get every point, and the differences with their aims.
-    png, pdf, csv : Path
+    files : FigureFiles
         Figure, and its curves.
-    start_s, end_s : float
-        The window [s].
-    diameter_m, width_m, thickness_m : float
-        Of particles and bed [m].
-    resolution_dpi : int
-        Of the png [dots per inch].
+    window : Window
+        To average over.
+    width_m : float
+        Of the bed [m].
+    slab : Slab
     """
     measured = read_points(points)
-    store, described = open_trajectory(trajectory, metadata)
-    frames = store[window(np.array(described["times_s"]), start_s, end_s)]
-    bed = Bed(frames, described["frame_interval_s"], diameter_m / 2, width_m, thickness_m)
-    compared, found = compare(measured, bed)
+    store, described = bed.open()
+    frames = store[window.frames(np.array(described["times_s"]))]
+    seen = Bed(frames, described["frame_interval_s"], slab.diameter_m / 2, width_m, slab.thickness_m)
+    compared, found = compare(measured, seen)
     found["aim"] = found["quantity"].map(AIMS)
     x = np.linspace(0, width_m, FINE_POINTS)
     panels = measured[["quantity", "height_m"]].drop_duplicates().itertuples(index=False)
-    curves = pd.concat([simulated(bed, quantity, height, x)[0] for quantity, height in panels])
-    draw(compared, curves, png, pdf, resolution_dpi)
-    write_csv(curves, csv)
+    curves = pd.concat([simulated(seen, quantity, height, x)[0] for quantity, height in panels])
+    draw(compared, curves, files)
+    write_csv(curves, files.csv)
     write_csv(compared, table)
     write_csv(found, metrics)
     for row in found[found["aim"].notna()].itertuples():
@@ -87,21 +85,5 @@ def validate_bed(
                  "met" if row.value <= row.aim else "missed")  # fmt: skip
 
 
-if "snakemake" in globals():
-    with stage(snakemake.log[0]):
-        validate_bed(
-            Path(snakemake.input.trajectory),
-            Path(snakemake.input.metadata),
-            Path(snakemake.input.points),
-            Path(snakemake.output.table),
-            Path(snakemake.output.metrics),
-            Path(snakemake.output.png),
-            Path(snakemake.output.pdf),
-            Path(snakemake.output.csv),
-            snakemake.params.start_s,
-            snakemake.params.end_s,
-            snakemake.params.diameter_m,
-            snakemake.params.width_m,
-            snakemake.params.thickness_m,
-            snakemake.params.resolution_dpi,
-        )
+if rule := globals().get("snakemake"):
+    run_stage(validate_bed, rule)

@@ -7,44 +7,8 @@ usage: python scripts/write_parameters.py cases/short/case.yaml results/short
 import argparse
 from pathlib import Path
 
-from bedchain.case.load import load_case
-from bedchain.case.parameters import fluidization_line, liggghts_text, openfoam_text, solver_parameters
-from bedchain.case.schema import load_schema
-from bedchain.dem.disk import require_disk, run_bytes
+from bedchain.dem.parameter_files import write_parameters
 from bedchain.errors import report_user_errors
-from bedchain.files import write_text
-
-
-def write_parameters(case_file: Path, folder: Path) -> None:
-    """Check a case and the disk, then write both parameter files.
-
-    Parameters
-    ----------
-    case_file : Path
-        The case.
-    folder : Path
-        Gets ``parameters.lig`` and ``caseParameters``; made where missing. Equal files are left alone.
-
-    Raises
-    ------
-    UserError
-        Where the case cannot be run or the disk is too full; nothing is written then.
-    """
-    case = load_case(case_file)
-    parameters = solver_parameters(case, load_schema())
-    folder.mkdir(parents=True, exist_ok=True)
-    require_disk(folder, run_bytes(case))
-    write_if_changed(folder / "parameters.lig", liggghts_text(parameters))
-    write_if_changed(folder / "caseParameters", openfoam_text(parameters))
-    if case["gas"]["model"] != "none":
-        print(fluidization_line(case))
-
-
-def write_if_changed(file: Path, text: str) -> None:
-    """Write `text` under a temporary name and move it to `file`, unless it is there already."""
-    if file.exists() and file.read_text(encoding="utf-8") == text:
-        return
-    write_text(file, text)
 
 
 def main() -> None:

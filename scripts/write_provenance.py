@@ -8,23 +8,26 @@ from pathlib import Path
 from bedchain.case.schema import Case
 from bedchain.files import write_text
 from bedchain.provenance import case_hash, debian_packages, git_state, machine, python_packages, rule_times
-from bedchain.stage import LOG, stage
+from bedchain.stage import LOG, run_stage
 
 
-def write_provenance(case: Case, inputs: dict[str, Path], benchmarks: Path, provenance: Path) -> None:
+def write_provenance(
+    case: Case, dem: Path, metrics: Path, timing: Path, benchmarks: Path, provenance: Path
+) -> None:
     """Write versions, commit, case, seeds, machine, and what each job took.
 
     Parameters
     ----------
     case : dict
         The case with its defaults, without the looks of its figures.
-    inputs : dict of str to Path
-        Name -> file that the results rest on; its SHA-256 is noted.
+    dem, metrics, timing : Path
+        Files that the results rest on; their SHA-256 are noted.
     benchmarks : Path
         Folder of Snakemake's benchmark files.
     provenance : Path
         JSON file to make.
     """
+    inputs = {"dem": dem, "metrics": metrics, "timing": timing}
     record = {
         "case": {"sha256": case_hash(case), "values": case},
         "seeds": {"particles": case["seed"], "chain": case["chain"]["seed"]},
@@ -38,15 +41,5 @@ def write_provenance(case: Case, inputs: dict[str, Path], benchmarks: Path, prov
     LOG.info("commit %s, %d jobs timed, in %s", record["git"]["commit"], len(record["times"]), provenance)
 
 
-if "snakemake" in globals():
-    with stage(snakemake.log[0]):
-        write_provenance(
-            dict(snakemake.params.case),
-            {
-                "dem": Path(snakemake.input.dem),
-                "metrics": Path(snakemake.input.metrics),
-                "timing": Path(snakemake.input.timing),
-            },
-            Path(snakemake.params.benchmarks),
-            Path(snakemake.output.provenance),
-        )
+if rule := globals().get("snakemake"):
+    run_stage(write_provenance, rule)

@@ -12,9 +12,9 @@ from matplotlib.figure import Figure
 
 from bedchain.case.schema import load_schema
 from bedchain.comparison.table1 import table_of_values
-from bedchain.figures.style import DOUBLE_COLUMN_IN, figure_style, save_figure
+from bedchain.figures.style import DOUBLE_COLUMN_IN, FigureFiles, figure_style
 from bedchain.files import write_csv
-from bedchain.stage import stage
+from bedchain.stage import run_stage
 
 # "Inner width along x [m]. Table 1 (0.27 m)." -> name, unit, note
 DESCRIPTION = re.compile(r"(?P<name>.*?)\s*\[(?P<unit>[^\]]*)\]\s*[.,;:]?\s*(?P<note>.*)", re.DOTALL)
@@ -25,28 +25,22 @@ GAP_IN = 0.065
 FONT_SIZE = 5.6
 
 
-def write_table(
-    schema: Path, table: Path, png: Path, pdf: Path, values: dict[str, Any], resolution_dpi: int
-) -> None:
+def write_table(schema: Path, files: FigureFiles, values: dict[str, Any]) -> None:
     """Write Table 1 as numbers and as a picture.
 
     Parameters
     ----------
     schema : Path
         ``case.schema.yaml``: meaning, unit and source of each key, and the paper's value.
-    table : Path
-        Gets section, parameter, paper, this_case, unit, note, key.
-    png, pdf : Path
-        The same as a figure.
+    files : FigureFiles
+        The table as a figure; its csv gets section, parameter, paper, this_case, unit, note, key.
     values : dict of str to value
         Dotted key to value of the case.
-    resolution_dpi : int
-        Of the png [dots per inch].
     """
     rows = table_rows(table_of_values(values, load_schema(schema)))
-    write_csv(rows, table)
+    write_csv(rows, files.csv)
     with figure_style(), plt.rc_context({"figure.constrained_layout.use": False}):
-        save_figure(_drawn(rows), png, pdf, resolution_dpi)
+        files.save(_drawn(rows))
 
 
 def table_rows(values: pd.DataFrame) -> pd.DataFrame:
@@ -104,13 +98,5 @@ def _drawn(rows: pd.DataFrame) -> Figure:
     return figure
 
 
-if "snakemake" in globals():
-    with stage(snakemake.log[0]):
-        write_table(
-            Path(snakemake.input.schema),
-            Path(snakemake.output.table),
-            Path(snakemake.output.png),
-            Path(snakemake.output.pdf),
-            snakemake.params.values,
-            snakemake.params.resolution_dpi,
-        )
+if rule := globals().get("snakemake"):
+    run_stage(write_table, rule)

@@ -1,10 +1,13 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""What every stage script shares: its log, its errors, and files that appear only when they are complete."""
+"""Stages: an entry function called by the names of its rule, with one log and one exit for errors."""
 
+import inspect
 import logging
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator, Mapping
 from contextlib import contextmanager
+from dataclasses import is_dataclass
 from pathlib import Path
+from typing import Any
 
 from bedchain.errors import DataError, UserError, report_user_errors
 
@@ -44,3 +47,88 @@ def stage(log: Path | str) -> Iterator[None]:
         for handler in handlers:
             LOG.removeHandler(handler)
             handler.close()
+
+
+def run_stage(function: Callable[..., object], rule: Any) -> None:
+    """Call a stage's entry function by the names of its rule, inside `stage`.
+
+    Parameters
+    ----------
+    function : callable
+        Its parameters have the names of the rule's outputs, inputs, params and wildcards.
+    rule : Snakemake's ``snakemake`` object
+        Of the job.
+
+    Raises
+    ------
+    SystemExit
+        Code 1, after a `UserError` or a `DataError`.
+    TypeError
+        The rule lacks a name: a mistake in rule or script.
+    """
+    with stage(rule.log[0]):
+        try:
+            arguments = stage_arguments(function, rule_names(rule))
+        except TypeError as error:
+            raise TypeError(f"rule {rule.rule}: {error}") from error
+        function(**arguments)
+
+
+def rule_names(rule: Any) -> dict[str, Any]:
+    """Everything that a rule gives its script, by name; outputs and inputs as `Path` or list of `Path`."""
+    names = dict(rule.wildcards.items()) | dict(rule.params.items())
+    for files in (rule.input, rule.output):
+        names |= {name: _paths(value) for name, value in files.items()}
+    return names
+
+
+def _paths(files: Any) -> Path | list[Path]:
+    return Path(files) if isinstance(files, str) else [Path(file) for file in files]
+
+
+def stage_arguments(function: Callable[..., object], names: Mapping[str, Any]) -> dict[str, Any]:
+    """Arguments of an entry function, looked up by the names of its parameters.
+
+    A parameter whose type is a dataclass or a named tuple is made from the mapping of its name where there
+    is one, else from the names of its fields. A parameter with a default may be missing.
+
+    Parameters
+    ----------
+    function : callable
+        An entry function, or a dataclass or named tuple.
+    names : mapping of str to object
+        Of `rule_names`.
+
+    Returns
+    -------
+    dict of str to object
+
+    Raises
+    ------
+    TypeError
+        A name is missing, or a mapping has other names than the fields.
+    """
+    arguments: dict[str, Any] = {}
+    for parameter in inspect.signature(function, eval_str=True).parameters.values():
+        name, kind = parameter.name, parameter.annotation
+        if _has_fields(kind):
+            arguments[name] = kind(**stage_arguments(kind, _names_for(kind, name, names)))
+        elif name in names:
+            arguments[name] = Path(names[name]) if kind is Path else names[name]
+        elif parameter.default is parameter.empty:
+            raise TypeError(f"{function.__name__} takes {name!r}; there are {', '.join(sorted(names))}")
+    return arguments
+
+
+def _has_fields(kind: Any) -> bool:
+    return isinstance(kind, type) and (is_dataclass(kind) or hasattr(kind, "_fields"))
+
+
+def _names_for(kind: type, name: str, names: Mapping[str, Any]) -> Mapping[str, Any]:
+    """Where the fields of a value object are looked up: in the mapping of a name, or among all names."""
+    mapping = names.get(name)
+    if not isinstance(mapping, Mapping):
+        return names
+    if others := mapping.keys() - inspect.signature(kind).parameters.keys():
+        raise TypeError(f"{name!r} gives {', '.join(sorted(others))}, which {kind.__name__} does not take")
+    return mapping

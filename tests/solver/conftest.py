@@ -7,8 +7,8 @@ import sys
 import pytest
 import yaml
 
+from bedchain.dem.parameter_files import write_parameters
 from made import ROOT
-from write_parameters import write_parameters
 
 TINY = {
     "title": "tiny bed for the tests",

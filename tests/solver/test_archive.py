@@ -12,9 +12,12 @@ import yaml
 from bedchain.case.load import load_case
 from bedchain.case.schema import load_schema
 from bedchain.dem.gas_field import gas_near
+from bedchain.dem.parameter_files import write_parameters
 from bedchain.errors import UserError
+from bedchain.measures.mixing import Splits
 from bedchain.trajectory.archive import check_archive, check_files, read_provenance
-from bedchain.trajectory.store import open_trajectory, read_manifest
+from bedchain.trajectory.frames import Window
+from bedchain.trajectory.store import BedFiles, open_trajectory, read_manifest
 from check_reference import check_reference
 from made.gas import COLUMNS, HEIGHT, ROWS, WIDTH, voidage_at, write_gas
 from made.synthetic_bed import STAMP, rolling_bed, write_run, write_series
@@ -22,7 +25,6 @@ from measure_mixing import measure_mixing
 from pack_reference import check_parameters, finished_manifest, pack_reference
 from parse_dumps import parse_dumps
 from unpack_reference import unpack_reference
-from write_parameters import write_parameters
 
 NUMBER, CELL, LEVEL = 600, 0.01, 1e-3
 TIMES = np.round(np.arange(0, 2 + 1e-9, 0.025), 6)
@@ -57,8 +59,8 @@ def archived(tmp_path_factory):
     write_series(results, np.arange(0, 2, 5e-3), 800.0, 0.06, NUMBER)
     parse_dumps(dem, results / "trajectory.npy", results / "trajectory.json", WIDTH, HEIGHT, progress=False)
     measure_mixing(
-        results / "trajectory.npy", results / "trajectory.json", results / "repeats" / "1" / "mixing.csv",
-        "dem_1", 1.0, 2.0, WIDTH / 2, 0.06,
+        BedFiles(results / "trajectory.npy", results / "trajectory.json"),
+        results / "repeats" / "1" / "mixing.csv", "dem_1", Window(1.0, 2.0), Splits(WIDTH / 2, 0.06),
     )  # fmt: skip
     for at, time in ((2, 1.0), (4, 2.0)):
         write_gas(results / "dem" / STAMP / f"segment_{at:04d}" / "gas", cut=at == 4, time_s=time)
@@ -73,7 +75,9 @@ def archived(tmp_path_factory):
 
 def unpack(root, target):
     unpack_reference(
-        root / "reference", *(target / name for name in OUTPUTS), [target / "repeats" / "1" / "mixing.csv"]
+        root / "reference" / "provenance.json",
+        *(target / name for name in OUTPUTS),
+        [target / "repeats" / "1" / "mixing.csv"],
     )
 
 

@@ -10,10 +10,10 @@ import pandas as pd
 import pytest
 
 from bedchain.dem import gas_case
+from bedchain.dem.run import input_files, run_dem
 from bedchain.dem.segments import input_stamp
 from bedchain.errors import UserError
 from bedchain.trajectory.dumps import read_dump
-from run_dem import input_files, run_dem
 
 ROUND_OFF = 1e-12  # relative, of sums over some hundred terms
 SOLVER_TOLERANCE = 1e-5  # of the pressure solve, between runs that cut the mesh differently

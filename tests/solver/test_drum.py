@@ -10,18 +10,21 @@ import pandas as pd
 import pytest
 import yaml
 
-import run_dem
 from assign_cells import assign_cells
-from bedchain.chains.registry import load
+from bedchain.chains.registry import ModelSettings, load
+from bedchain.dem import run
+from bedchain.dem.parameter_files import write_parameters
 from bedchain.errors import UserError
 from bedchain.files import read_arrays
+from bedchain.measures.batch import Batch
+from bedchain.measures.mixing import Splits
 from bedchain.trajectory.dumps import read_dump
-from bedchain.trajectory.store import open_trajectory
+from bedchain.trajectory.frames import Window
+from bedchain.trajectory.store import BedFiles, open_trajectory
 from build_transitions import build_transitions
 from made import ROOT
 from parse_dumps import parse_dumps
 from run_chain import run_chain
-from write_parameters import write_parameters
 
 DIAMETER, REVOLUTION, NUMBER, END = 0.06, 1.0, 160, 8.0
 SMALL = {
@@ -67,19 +70,24 @@ def no_openfoam(tmp_path_factory):
     with pytest.MonkeyPatch.context() as patch:
         patch.chdir(ROOT)
         patch.setenv("PATH", str(programs))
-        patch.setattr(run_dem, "SOLVER", Path("not/built"))
+        patch.setattr(run, "SOLVER", Path("not/built"))
         assert shutil.which("blockMesh") is None
         yield patch
+
+
+def files_of(folder):
+    """Trajectory and cells of the run in a folder."""
+    return BedFiles(*(folder / name for name in ("trajectory.npy", "trajectory.json", "cells.npz")))
 
 
 @pytest.fixture(scope="module")
 def drum(small, no_openfoam):
     """The run, with its trajectory and cells."""
     folder = small("run")
-    run_dem.run_dem(folder, END, 2.0, 1)
-    frames = folder / "trajectory.npy", folder / "trajectory.json"
-    parse_dumps(folder / "dem.json", *frames, DIAMETER, DIAMETER, progress=False)
-    assign_cells(*frames, folder / "cells.npz", 4, 4, 3e-3)
+    run.run_dem(folder, END, 2.0, 1)
+    bed = files_of(folder)
+    parse_dumps(folder / "dem.json", bed.trajectory, bed.metadata, DIAMETER, DIAMETER, progress=False)
+    assign_cells(bed, bed.cells, 4, 4, 3e-3)
     return folder
 
 
@@ -120,8 +128,8 @@ def test_the_surface_inclines_to_the_side_that_the_wall_moves_to(drum):
 
 @pytest.mark.parametrize("lag", [REVOLUTION, REVOLUTION / 5])
 def test_matrix_of_a_revolution_is_stochastic_and_knows_only_cells_in_the_drum(drum, tmp_path, lag):
-    frames = drum / "trajectory.npy", drum / "trajectory.json"
-    build_transitions(*frames, drum / "cells.npz", tmp_path / "static.npz", "static", "pooled", lag, 1.0, 7.0)
+    window = Window(1.0, 7.0)
+    build_transitions(files_of(drum), tmp_path / "static.npz", "static", "pooled", lag, window)
     chain = load(tmp_path / "static.npz")
     P = chain.matrix.toarray()
     assert (P >= 0).all()
@@ -134,12 +142,11 @@ def test_matrix_of_a_revolution_is_stochastic_and_knows_only_cells_in_the_drum(d
 
 
 def test_mixing_curve_tends_to_the_mean(drum, tmp_path):
-    frames = drum / "trajectory.npy", drum / "trajectory.json"
-    build_transitions(*frames, drum / "cells.npz", tmp_path / "static.npz", "static", "pooled", 0.2, 1.0, 5.0)
-    learned = {"start_s": 1.0, "end_s": 5.0}
+    bed, learning = files_of(drum), Window(1.0, 5.0)
+    build_transitions(bed, tmp_path / "static.npz", "static", "pooled", 0.2, learning)
     run_chain(
-        *frames, drum / "cells.npz", tmp_path / "static.npz", tmp_path / "chain.npz",
-        learned, "pooled", 5.0, 8.0, DIAMETER / 2, 0.015, 0.015, [0.2], seed=1,
+        bed, tmp_path / "static.npz", tmp_path / "chain.npz", learning, Window(5.0, 8.0),
+        Splits(DIAMETER / 2, 0.015), Batch(0.015, [0.2]), ModelSettings("pooled", 1),
     )  # fmt: skip
     left, right = read_arrays(tmp_path / "chain.npz")["remaining"][:, :2].T
     assert left[0] == right[0] == 1
@@ -150,10 +157,10 @@ def test_mixing_curve_tends_to_the_mean(drum, tmp_path):
 
 def test_a_run_that_was_stopped_goes_on_where_it_was(small, no_openfoam):
     whole, stopped = small("whole"), small("stopped")
-    run_dem.run_dem(whole, 0.24, 0.24, 1)
-    run_dem.run_dem(stopped, 0.2, 0.2, 1)
+    run.run_dem(whole, 0.24, 0.24, 1)
+    run.run_dem(stopped, 0.2, 0.2, 1)
     first = {file: file.stat().st_mtime_ns for file in stopped.glob("dem/*/segment_0001/frame_*")}
-    run_dem.run_dem(stopped, 0.24, 0.2, 1)
+    run.run_dem(stopped, 0.24, 0.2, 1)
     assert first and all(file.stat().st_mtime_ns == then for file, then in first.items())
     one, two = (pd.read_csv(folder / "bed_series.csv") for folder in (whole, stopped))
     pd.testing.assert_frame_equal(two[:-1], one[:-1])
@@ -166,11 +173,11 @@ def test_without_liggghts_a_drum_says_what_is_missing(small, no_openfoam, tmp_pa
     with pytest.MonkeyPatch.context() as patch:
         patch.setenv("PATH", str(tmp_path))
         with pytest.raises(UserError, match="the program liggghts is not installed"):
-            run_dem.run_dem(folder, 0.4, 0.4, 1)
+            run.run_dem(folder, 0.4, 0.4, 1)
     assert not (folder / "dem.json").exists()
 
 
 def test_a_box_still_asks_for_bedfoam(no_openfoam, tmp_path):
     write_parameters(ROOT / "cases" / "short" / "case.yaml", tmp_path / "short")
     with pytest.raises(UserError, match="not/built missing"):
-        run_dem.run_dem(tmp_path / "short", 0.5, 0.5, 1)
+        run.run_dem(tmp_path / "short", 0.5, 0.5, 1)

@@ -10,7 +10,8 @@ import pytest
 
 from bedchain.dem.gas_field import nearest_gas, read_gas_field
 from bedchain.errors import UserError
-from bedchain.trajectory.store import read_manifest
+from bedchain.figures.style import FigureFiles
+from bedchain.trajectory.store import BedFiles, read_manifest
 from made.gas import COLUMNS, HEIGHT, ROWS, WIDTH, voidage_at, write_gas
 from made.synthetic_bed import rolling_bed, write_run
 from parse_dumps import parse_dumps
@@ -51,7 +52,8 @@ def test_snapshot_shows_particles_and_gas_of_one_moment(case, tmp_path):
     shutil.copytree(case, tmp_path / "dem" / "a1b2c3" / "segment_0002" / "gas")
     parse_dumps(dem, tmp_path / "t.npy", tmp_path / "t.json", WIDTH, HEIGHT, progress=False)
     png, pdf, csv = (tmp_path / f"snapshot.{form}" for form in ("png", "pdf", "csv"))
-    plot_snapshot(dem, tmp_path / "t.npy", tmp_path / "t.json", png, pdf, csv, 0.2, 1e-3, "cividis", 80)
+    bed = BedFiles(tmp_path / "t.npy", tmp_path / "t.json")
+    plot_snapshot(dem, bed, FigureFiles(png, pdf, csv, 80), 0.2, 1e-3, "cividis")
     picture = matplotlib.image.imread(png)[..., :3]
     # the voidage fills a good part of the page with blue, the particles leave less ink
     assert ((picture[..., 2] - picture[..., 0]) > 0.1).mean() > 0.05

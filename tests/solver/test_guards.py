@@ -9,10 +9,10 @@ import sys
 import pandas as pd
 import pytest
 
-import run_dem as stage
 from bedchain.dem import gas_case
+from bedchain.dem import run as stage
 from bedchain.dem.lattices import lattice
-from bedchain.dem.segments import SETTLED, input_stamp
+from bedchain.dem.segments import SETTLED, SegmentedRun, input_stamp
 from bedchain.dem.small_cases import Setup, run_gas
 from bedchain.errors import UserError
 
@@ -61,7 +61,7 @@ def faulty_bed(make_bed, settled_once):
 def run_of(folder, ranks):
     """The run that the command line makes of a folder."""
     stamp = input_stamp(stage.input_files(folder), ranks)
-    return stage.Run(folder, folder, stamp, ranks, 0, round(END_S / STEP_S), SETTLED)
+    return SegmentedRun(folder, folder, stamp, ranks, 0, round(END_S / STEP_S), SETTLED)
 
 
 def stopped(folder, ranks, pattern):

@@ -8,9 +8,9 @@ import pandas as pd
 import pytest
 
 from bedchain.dem.repeats import KICK_M_S
+from bedchain.dem.run import repeat_dem, run_dem
 from bedchain.errors import UserError
 from bedchain.trajectory.dumps import read_dump
-from run_dem import repeat_dem, run_dem
 
 COLUMNS = ["id", "x", "z", "vx", "vz"]
 START, END, SEGMENT = 0.04, 0.06, 0.02

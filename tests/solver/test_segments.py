@@ -12,8 +12,8 @@ import numpy as np
 import pandas as pd
 import pytest
 
+from bedchain.dem.run import run_dem
 from bedchain.errors import UserError
-from run_dem import run_dem
 
 FRAMES = 16  # 0 to 0.06 s each 0.004 s
 DEADLINE_S = 120.0

@@ -11,10 +11,10 @@ import pytest
 
 from bedchain.dem.gas_case import last_time
 from bedchain.dem.lattices import lattice
-from bedchain.dem.segments import SETTLED, input_stamp
+from bedchain.dem.run import input_files, run_dem, settle
+from bedchain.dem.segments import SETTLED, SegmentedRun, input_stamp
 from bedchain.dem.small_cases import Setup, run_gas
 from made import ROOT
-from run_dem import Run, input_files, run_dem, settle
 
 LENGTHS = [0, 2, 3, 4]  # diameters
 DIAMETER, WIDTH, HEIGHT = 1e-3, 0.02, 0.06
@@ -57,7 +57,7 @@ def after_one_exchange(make_bed, settled_once, length, cell, ranks):
         run={"ranks": ranks},
         time={"gas_step_s": STEP, "frame_interval_s": STEP, "segment_s": STEP},
     )
-    run = Run(folder, folder, input_stamp(input_files(folder), ranks), ranks, 0, 1, SETTLED)
+    run = SegmentedRun(folder, folder, input_stamp(input_files(folder), ranks), ranks, 0, 1, SETTLED)
     if not (settled_once / SETTLED).exists():
         settle(replace(run, ranks=1))
         shutil.copytree(run.state / SETTLED, settled_once / SETTLED)

@@ -8,10 +8,10 @@ import numpy as np
 import pandas as pd
 import pytest
 
+from bedchain.dem.run import input_files, run_dem
 from bedchain.dem.segments import input_stamp, read_parameters
 from bedchain.errors import CaseError
 from bedchain.trajectory.dumps import read_dump
-from run_dem import input_files, run_dem
 
 THICK = {
     "bed": {"width_m": 0.02, "height_m": 0.06, "thickness_m": 0.005, "layers": "many"},

@@ -7,11 +7,14 @@ import pytest
 
 from bedchain.case.load import load_case
 from bedchain.case.variants import Variant
+from bedchain.dem.run import repeat_dem, run_dem
+from bedchain.measures.mixing import Splits
 from bedchain.studies.tradeoff.bed_variants import BedVariant, bed_variants
 from bedchain.studies.tradeoff.simulated_beds import PEAK_FILE, simulate_all
+from bedchain.trajectory.frames import Window
+from bedchain.trajectory.store import BedFiles
 from measure_mixing import measure_mixing
 from parse_dumps import parse_dumps
-from run_dem import repeat_dem, run_dem
 from study_tradeoff import opened
 
 # a run of a few hundred particles: its solvers' peak is that of their libraries
@@ -33,8 +36,8 @@ def bed(make_bed):
             path / "dem.json", *files, case["bed"]["width_m"], case["bed"]["height_m"], progress=False
         )
     measure_mixing(
-        *files, path / "mixing.csv", "dem_1", compared["start_s"], compared["end_s"], lines["split_x_m"],
-        lines["split_z_m"],
+        BedFiles(*files), path / "mixing.csv", "dem_1", Window(compared["start_s"], compared["end_s"]),
+        Splits(**lines),
     )  # fmt: skip
     return file, folder
 

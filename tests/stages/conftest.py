@@ -7,8 +7,12 @@ import numpy as np
 import pytest
 
 from assign_cells import assign_cells
+from bedchain.chains.registry import ModelSettings
+from bedchain.comparison.curves import ChainFiles
+from bedchain.measures.batch import Batch
+from bedchain.trajectory.store import BedFiles
 from build_transitions import build_transitions
-from compare_mixing import compare_mixing
+from compare_mixing import SolverSeries, Tables, compare_mixing
 from made.small_bed import (
     BATCH,
     COLUMNS,
@@ -17,13 +21,11 @@ from made.small_bed import (
     FILLED,
     HEIGHT,
     LEARN,
-    LEARNING,
     MODELS,
     MOMENTS,
     NUMBER,
     ROWS,
-    SPLIT_X,
-    SPLIT_Z,
+    SPLITS,
     TIMES,
     WEIGHT_PA,
     WIDTH,
@@ -53,16 +55,17 @@ def bed(tmp_path_factory, frames):
     paths.transitions = {model: folder / f"transitions_{model}.npz" for model in MODELS}
     paths.chains = {model: folder / f"chain_{model}.npz" for model in MODELS}
     parse_dumps(paths.dem, paths.trajectory, paths.metadata, WIDTH, HEIGHT, progress=False)
-    assign_cells(paths.trajectory, paths.metadata, paths.cells, COLUMNS, ROWS, DIAMETER)
-    paths.frames = (paths.trajectory, paths.metadata, paths.cells)
+    assign_cells(BedFiles(paths.trajectory, paths.metadata), paths.cells, COLUMNS, ROWS, DIAMETER)
+    paths.files = BedFiles(paths.trajectory, paths.metadata, paths.cells)
+    paths.chain_files = ChainFiles(list(MODELS), list(paths.chains.values()))
     for model in MODELS:
-        build_transitions(*paths.frames, paths.transitions[model], model, "pooled", 0.025, *LEARN)
+        build_transitions(paths.files, paths.transitions[model], model, "pooled", 0.025, LEARN)
         run_chain(
-            *paths.frames, paths.transitions[model], paths.chains[model],
-            LEARNING, "pooled", *COMPARE, SPLIT_X, SPLIT_Z, BATCH, MOMENTS, seed=3,
+            paths.files, paths.transitions[model], paths.chains[model],
+            LEARN, COMPARE, SPLITS, Batch(BATCH, MOMENTS), ModelSettings("pooled", 3),
         )  # fmt: skip
     compare_mixing(
-        *paths.frames, paths.chains, paths.series, paths.mixing, paths.metrics,
-        *COMPARE, SPLIT_X, SPLIT_Z, BATCH, *LEARN, WEIGHT_PA,
+        paths.files, paths.chain_files, SolverSeries(paths.series, LEARN, WEIGHT_PA), [],
+        Tables(paths.mixing, paths.metrics), COMPARE, SPLITS, BATCH,
     )  # fmt: skip
     return paths

@@ -8,13 +8,16 @@ import pandas as pd
 import pytest
 
 from assign_cells import assign_cells
+from bedchain.chains.registry import ModelSettings
 from bedchain.comparison.diagnostics import COLUMNS as HEADER
 from bedchain.errors import UserError
-from bedchain.measures.mixing import GROUPS
+from bedchain.measures.mixing import GROUPS, Splits
+from bedchain.trajectory.frames import Window
+from bedchain.trajectory.store import BedFiles
 from build_transitions import build_transitions
 from diagnose_chains import diagnose_chains
-from made.drawings import COLOURS, DPI, assert_drawn, outputs
-from made.small_bed import COLUMNS, MODELS, MOMENTS, ROWS, SPLIT_X, SPLIT_Z
+from made.drawings import COLOURS, assert_drawn, outputs
+from made.small_bed import COLUMNS, MODELS, MOMENTS, ROWS, SPLITS
 from made.synthetic_bed import write_run
 from parse_dumps import parse_dumps
 from plot_chapman_kolmogorov import plot_chapman_kolmogorov
@@ -24,8 +27,7 @@ from plot_timescales import plot_timescales, processes
 # 6 x 4 cells of 1 cm; along each axis a particle stays with 1/2 and moves with 1/4 each way, as walls allow
 ACROSS, UP, SIZE, LAG = 6, 4, 0.01, 0.025
 WALKERS, FRAMES = 2000, 121
-LEARN, COMPARE = {"start_s": 0.5, "end_s": 2.0}, {"start_s": 2.0, "end_s": 3.0}
-SPLITS = (0.03, 0.02)
+LEARN, COMPARE = Window(0.5, 2.0), Window(2.0, 3.0)
 LAGS = [1, 2, 4, 8]
 # 120 000 moves learned from: a percent on a probability; the gap of the slowest process is a difference
 SAMPLING = 0.08
@@ -48,16 +50,24 @@ def walk(tmp_path_factory):
         x, z = (place + 0.5) * SIZE
         frames.append(np.array([x, z, 0 * x, 0 * x]))
         place = np.clip(place + rng.choice([-1, 0, 0, 1], place.shape), 0, upper)
-    files = [folder / name for name in ("trajectory.npy", "trajectory.json", "cells.npz")]
+    files = BedFiles(*(folder / name for name in ("trajectory.npy", "trajectory.json", "cells.npz")))
     times = np.round(np.arange(FRAMES) * LAG, 6)
     dem = write_run(folder, np.array(frames), times, ACROSS * SIZE, UP * SIZE)
-    parse_dumps(dem, *files[:2], ACROSS * SIZE, UP * SIZE, progress=False)
-    assign_cells(*files, ACROSS, UP, 1e-3)
+    parse_dumps(dem, files.trajectory, files.metadata, ACROSS * SIZE, UP * SIZE, progress=False)
+    assign_cells(files, files.cells, ACROSS, UP, 1e-3)
     transitions = {model: folder / f"transitions_{model}.npz" for model in MODELS}
     for model, path in transitions.items():
-        build_transitions(*files, path, model, "pooled", LAG, *LEARN.values())
+        build_transitions(files, path, model, "pooled", LAG, LEARN)
     path = folder / "diagnostics.csv"
-    diagnose_chains(*files, transitions, path, LEARN, COMPARE, *SPLITS, "pooled", seed=3)
+    diagnose_chains(
+        files,
+        list(transitions.values()),
+        path,
+        LEARN,
+        COMPARE,
+        Splits(0.03, 0.02),
+        ModelSettings("pooled", 3),
+    )
     return SimpleNamespace(path=path, table=pd.read_csv(path))
 
 
@@ -144,7 +154,7 @@ def test_lacey_index_rises_from_apart_to_mixed(walk, source):
 
 
 def test_chapman_kolmogorov_figure_has_the_curves_of_all(walk, tmp_path):
-    plot_chapman_kolmogorov(walk.path, *outputs(tmp_path, "ck"), COLOURS, DPI)
+    plot_chapman_kolmogorov(walk.path, outputs(tmp_path, "ck"), COLOURS)
     table = assert_drawn(tmp_path, "ck")
     assert set(table["source"]) == {"dem", *MODELS}
     assert set(table["group"]) == {group for _, group in GROUPS}
@@ -152,7 +162,7 @@ def test_chapman_kolmogorov_figure_has_the_curves_of_all(walk, tmp_path):
 
 
 def test_timescales_figure_has_the_processes_of_all_lags(walk, tmp_path):
-    plot_timescales(walk.path, *outputs(tmp_path, "ts"), {m: COLOURS[m] for m in MODELS}, DPI)
+    plot_timescales(walk.path, outputs(tmp_path, "ts"), {m: COLOURS[m] for m in MODELS})
     table = assert_drawn(tmp_path, "ts")
     assert sorted(table["lag_s"].unique()) == pytest.approx([lag * LAG for lag in LAGS])
     assert (table["timescale_s"] > 0).all()
@@ -166,7 +176,7 @@ def test_a_pair_of_eigenvalues_is_one_process():
 
 
 def test_difference_figure_has_the_distance_of_each_moment(bed, tmp_path):
-    plot_difference(bed.cells, bed.chains["static"], bed.chains["dynamic"], *outputs(tmp_path, "d"), DPI)
+    plot_difference(bed.cells, bed.chains["static"], bed.chains["dynamic"], outputs(tmp_path, "d"))
     table = assert_drawn(tmp_path, "d")
     assert len(table) == len(MOMENTS) * COLUMNS * ROWS
     for _, part in table.groupby("time_s"):
@@ -177,17 +187,16 @@ def test_difference_figure_has_the_distance_of_each_moment(bed, tmp_path):
 
 def test_figures_of_models_without_rows_are_refused(walk, tmp_path):
     with pytest.raises(UserError, match="lacks timescales of other"):
-        plot_timescales(walk.path, *outputs(tmp_path, "ts"), {"other": "blue"}, DPI)
+        plot_timescales(walk.path, outputs(tmp_path, "ts"), {"other": "blue"})
     with pytest.raises(UserError, match="lacks curves of dem, static"):
-        plot_chapman_kolmogorov(walk.path, *outputs(tmp_path, "ck"), {"dem": "black", "static": "red"}, DPI)
+        plot_chapman_kolmogorov(walk.path, outputs(tmp_path, "ck"), {"dem": "black", "static": "red"})
     assert list(tmp_path.iterdir()) == []
 
 
 def test_a_real_roll_is_not_followed_by_the_static_chain_of_short_steps(bed, tmp_path):
-    learning, comparison = {"start_s": 0.5, "end_s": 2.0}, {"start_s": 2.0, "end_s": 3.0}
     path = tmp_path / "diagnostics.csv"
     diagnose_chains(
-        *bed.frames, bed.transitions, path, learning, comparison, SPLIT_X, SPLIT_Z, "pooled", seed=3
+        bed.files, list(bed.transitions.values()), path, LEARN, COMPARE, SPLITS, ModelSettings("pooled", 3)
     )
     table = pd.read_csv(path).query("quantity == 'chapman_kolmogorov_rms' and part == 'low'")
     error = table.set_index(["source", "lag_s"])["value"]

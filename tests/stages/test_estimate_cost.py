@@ -25,9 +25,9 @@ def estimate(case, tmp_path):
     targets = bed / "estimate.csv", bed / "estimate.txt"
 
     def run(archived=False):
-        runs = sorted((tmp_path / "results").glob("*/dem.json"))
-        benchmarks = dict.fromkeys(("bed", "made"), tmp_path / "benchmarks")
-        estimate_cost(case, bed, benchmarks, runs, archived, tmp_path / "presets.yaml", *targets)
+        records = {str(file): 0 for file in sorted((tmp_path / "results").glob("*/dem.json"))}
+        benchmarks = dict.fromkeys(("bed", "made"), str(tmp_path / "benchmarks"))
+        estimate_cost(case, str(bed), benchmarks, records, archived, tmp_path / "presets.yaml", *targets)
         return pd.read_csv(targets[0]).set_index("stage"), targets[1].read_text()
 
     return run

@@ -5,9 +5,10 @@ import numpy as np
 import pandas as pd
 import pytest
 
+from bedchain.chains.registry import ModelSettings
 from bedchain.errors import UserError
 from bedchain.trajectory.store import read_manifest
-from made.drawings import COLOURS, DPI, assert_drawn, outputs
+from made.drawings import COLOURS, assert_drawn, outputs
 from made.small_bed import (
     BATCH,
     COLUMNS,
@@ -18,8 +19,7 @@ from made.small_bed import (
     MOMENTS,
     NUMBER,
     ROWS,
-    SPLIT_X,
-    SPLIT_Z,
+    SPLITS,
 )
 from plot_cells import plot_cells
 from plot_cost import plot_cost, readable_ratio, readable_seconds
@@ -32,14 +32,14 @@ from time_models import dem_row, time_models
 def timing(bed):
     """Table of measured times."""
     time_models(
-        bed.dem, *bed.frames, bed.transitions, bed.timing,
-        *LEARN, *COMPARE, "pooled", SPLIT_X, SPLIT_Z, seed=1,
+        bed.dem, bed.files, list(bed.transitions.values()), bed.timing,
+        LEARN, COMPARE, SPLITS, ModelSettings("pooled", 1),
     )  # fmt: skip
     return pd.read_csv(bed.timing)
 
 
 def test_fig1_has_every_cell_with_its_particles(bed, tmp_path):
-    plot_cells(*bed.frames, *outputs(tmp_path, "fig1"), COMPARE[0], DIAMETER, "#9aa5b1", DPI)
+    plot_cells(bed.files, outputs(tmp_path, "fig1"), COMPARE[0], DIAMETER, "#9aa5b1")
     table = assert_drawn(tmp_path, "fig1")
     assert table["particles_1"].sum() == NUMBER
     np.testing.assert_array_equal(table["cell"], np.arange(COLUMNS * ROWS))
@@ -48,14 +48,14 @@ def test_fig1_has_every_cell_with_its_particles(bed, tmp_path):
 
 def test_fig1_of_a_frame_that_is_not_there_is_refused(bed, tmp_path):
     with pytest.raises(UserError, match="no frame at 7 s"):
-        plot_cells(*bed.frames, *outputs(tmp_path, "fig1"), 7.0, DIAMETER, "#9aa5b1", DPI)
+        plot_cells(bed.files, outputs(tmp_path, "fig1"), 7.0, DIAMETER, "#9aa5b1")
     assert list(tmp_path.iterdir()) == []
 
 
 @pytest.mark.parametrize("model", MODELS)
 def test_figs3_and_4_show_chain_and_dem(bed, tmp_path, model):
     plot_distribution(
-        bed.cells, bed.chains[model], *outputs(tmp_path, "fig3"), model, COMPARE[0], BATCH, "YlGnBu", DPI
+        bed.cells, bed.chains[model], outputs(tmp_path, "fig3"), model, COMPARE[0], BATCH, "YlGnBu"
     )
     table = assert_drawn(tmp_path, "fig3")
     totals = table.groupby(["source", "time_s"])["share_1"].sum()
@@ -65,7 +65,7 @@ def test_figs3_and_4_show_chain_and_dem(bed, tmp_path, model):
 
 @pytest.mark.parametrize(("direction", "groups"), [("radial", {"left", "right"}), ("axial", {"low", "up"})])
 def test_fig5_shows_both_groups(bed, tmp_path, direction, groups):
-    plot_mixing(bed.mixing, bed.metrics, bed.chains, *outputs(tmp_path, "fig5"), direction, COLOURS, DPI)
+    plot_mixing(bed.mixing, bed.metrics, bed.chain_files, outputs(tmp_path, "fig5"), direction, COLOURS)
     table = assert_drawn(tmp_path, "fig5")
     assert set(table["group"]) == groups
     exact = table[table["source"].isin(MODELS)]
@@ -75,9 +75,7 @@ def test_fig5_shows_both_groups(bed, tmp_path, direction, groups):
 
 def test_fig5_of_an_unknown_direction_is_refused(bed, tmp_path):
     with pytest.raises(UserError, match="no curves of direction 'azimuthal'"):
-        plot_mixing(
-            bed.mixing, bed.metrics, bed.chains, *outputs(tmp_path, "fig5"), "azimuthal", COLOURS, DPI
-        )
+        plot_mixing(bed.mixing, bed.metrics, bed.chain_files, outputs(tmp_path, "fig5"), "azimuthal", COLOURS)
 
 
 def test_timing_has_every_stage(timing):
@@ -102,7 +100,7 @@ def test_dem_time_of_a_window_counts_parts_of_segments(bed):
 
 
 def test_fig2_has_the_ratios_to_the_dem(timing, bed, tmp_path):
-    plot_cost(bed.timing, *outputs(tmp_path, "fig2"), "#4477aa", 1.0, DPI)
+    plot_cost(bed.timing, outputs(tmp_path, "fig2"), "#4477aa", 1.0)
     table = assert_drawn(tmp_path, "fig2").set_index(["model", "kind"])
     wall = timing.set_index("stage")["wall_s"]
     assert table.loc[("static", "exact"), "dem_over_this_1"] == pytest.approx(
@@ -116,7 +114,7 @@ def test_fig2_has_the_ratios_to_the_dem(timing, bed, tmp_path):
 def test_fig2_without_the_dem_is_refused(timing, tmp_path):
     timing[timing["stage"] != "dem"].to_csv(tmp_path / "t.csv", index=False)
     with pytest.raises(UserError, match="no stage 'dem'"):
-        plot_cost(tmp_path / "t.csv", *outputs(tmp_path, "fig2"), "#4477aa", 1.0, DPI)
+        plot_cost(tmp_path / "t.csv", outputs(tmp_path, "fig2"), "#4477aa", 1.0)
 
 
 @pytest.mark.parametrize(

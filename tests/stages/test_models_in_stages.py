@@ -9,20 +9,21 @@ import run_chain
 import time_models
 from bedchain.chains import registry
 from bedchain.chains.markov_chain import MarkovChain
+from bedchain.chains.registry import ModelSettings
+from bedchain.comparison.curves import ChainFiles
+from bedchain.measures.batch import Batch
 from build_transitions import build_transitions
-from compare_mixing import compare_mixing
+from compare_mixing import SolverSeries, Tables, compare_mixing
 from diagnose_chains import diagnose_chains
-from made.drawings import DPI, assert_drawn, outputs
+from made.drawings import assert_drawn, outputs
 from made.small_bed import (
     BATCH,
     COLUMNS,
     COMPARE,
     LEARN,
-    LEARNING,
     MOMENTS,
     ROWS,
-    SPLIT_X,
-    SPLIT_Z,
+    SPLITS,
     WEIGHT_PA,
 )
 from plot_chapman_kolmogorov import plot_chapman_kolmogorov
@@ -51,10 +52,10 @@ def chains(bed, tmp_path_factory):
         patched.setattr(run_chain, "REPLICATES", 2)
         for name in NAMES:
             path, options = made["transitions"][name], OPTIONS.get(name, {})
-            build_transitions(*bed.frames, path, name, "pooled", 0.025, *LEARN, options)
+            build_transitions(bed.files, path, name, "pooled", 0.025, LEARN, options)
             run_chain.run_chain(
-                *bed.frames, path, made["chain"][name], LEARNING, "pooled", *COMPARE, SPLIT_X, SPLIT_Z, BATCH,
-                MOMENTS, 3, options,
+                bed.files, path, made["chain"][name], LEARN, COMPARE, SPLITS, Batch(BATCH, MOMENTS),
+                ModelSettings("pooled", 3, options),
             )  # fmt: skip
     return made
 
@@ -80,13 +81,14 @@ def test_options_reach_the_models(chains):
 
 def test_all_models_are_compared_and_drawn(bed, chains, tmp_path):
     mixing, metrics = tmp_path / "mixing.csv", tmp_path / "metrics.csv"
+    files = ChainFiles(NAMES, list(chains["chain"].values()))
     compare_mixing(
-        *bed.frames, chains["chain"], bed.series, mixing, metrics, *COMPARE, SPLIT_X, SPLIT_Z, BATCH, *LEARN,
-        WEIGHT_PA,
+        bed.files, files, SolverSeries(bed.series, LEARN, WEIGHT_PA), [], Tables(mixing, metrics), COMPARE,
+        SPLITS, BATCH,
     )  # fmt: skip
     both = [f"{name}{how}" for name in NAMES for how in ("", "_monte_carlo")]
     assert list(dict.fromkeys(pd.read_csv(mixing)["source"])) == ["dem", *both]
-    plot_mixing(mixing, metrics, chains["chain"], *outputs(tmp_path, "fig5"), "radial", COLOURS, DPI)
+    plot_mixing(mixing, metrics, files, outputs(tmp_path, "fig5"), "radial", COLOURS)
     assert set(assert_drawn(tmp_path, "fig5")["source"]) == {"dem", *both}
 
 
@@ -95,10 +97,10 @@ def test_all_models_are_timed(bed, chains, tmp_path, monkeypatch):
     monkeypatch.setattr(time_models, "FEWEST", 1)
     timing = tmp_path / "timing.csv"
     time_models.time_models(
-        bed.dem, *bed.frames, chains["transitions"], timing, *LEARN, *COMPARE, "pooled", SPLIT_X, SPLIT_Z, 1,
-        OPTIONS,
+        bed.dem, bed.files, list(chains["transitions"].values()), timing, LEARN, COMPARE, SPLITS,
+        ModelSettings("pooled", 1, OPTIONS),
     )  # fmt: skip
-    plot_cost(timing, *outputs(tmp_path, "fig2"), "#4477aa", 1.0, DPI)
+    plot_cost(timing, outputs(tmp_path, "fig2"), "#4477aa", 1.0)
     table = assert_drawn(tmp_path, "fig2").set_index(["model", "kind"])
     for name in NAMES:
         assert (table.loc[name].loc[["learn", "exact", "monte_carlo"], "wall_s"] > 0).all()
@@ -106,18 +108,19 @@ def test_all_models_are_timed(bed, chains, tmp_path, monkeypatch):
 
 def test_timescales_are_given_of_models_with_a_matrix(bed, chains, tmp_path):
     path = tmp_path / "diagnostics.csv"
-    comparison = dict(zip(("start_s", "end_s"), COMPARE, strict=True))
     names = ("velocity_class", "jump", "recurrence")
     few = {name: chains["transitions"][name] for name in names}
-    diagnose_chains(*bed.frames, few, path, LEARNING, comparison, SPLIT_X, SPLIT_Z, "pooled", 3, OPTIONS)
+    diagnose_chains(
+        bed.files, list(few.values()), path, LEARN, COMPARE, SPLITS, ModelSettings("pooled", 3, OPTIONS)
+    )
     table = pd.read_csv(path)
     assert isinstance(registry.load(few["velocity_class"]), MarkovChain)
     assert set(table.query("quantity == 'implied_timescale'")["source"]) == {"velocity_class"}
     assert set(table.query("quantity == 'lacey_index'")["source"]) == {"dem", *names}
     colours = {name: COLOURS[name] for name in names}
-    plot_timescales(path, *outputs(tmp_path, "ts"), colours, DPI)
+    plot_timescales(path, outputs(tmp_path, "ts"), colours)
     assert (assert_drawn(tmp_path, "ts")["timescale_s"] > 0).all()
-    plot_chapman_kolmogorov(path, *outputs(tmp_path, "ck"), {"dem": "black"} | colours, DPI)
+    plot_chapman_kolmogorov(path, outputs(tmp_path, "ck"), {"dem": "black"} | colours)
     assert_drawn(tmp_path, "ck")
     distance = table.query("quantity == 'long_run_total_variation'").set_index("source")["value"]
     assert set(distance.index) == set(names) and distance.between(0, 0.3).all()

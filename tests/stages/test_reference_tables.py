@@ -7,8 +7,12 @@ import pandas as pd
 import pytest
 
 from bedchain.errors import UserError
-from compare_mixing import compare_mixing
-from discuss_errors import discuss_errors
+from bedchain.figures.style import FigureFiles
+from bedchain.measures.voidage import Slab
+from bedchain.trajectory.frames import Window
+from bedchain.trajectory.store import BedFiles
+from compare_mixing import SolverSeries, Tables, compare_mixing
+from discuss_errors import CaseChains, Scanned, discuss_errors
 from made.small_bed import (
     BATCH,
     COLUMNS,
@@ -16,17 +20,15 @@ from made.small_bed import (
     DIAMETER,
     HEIGHT,
     LEARN,
-    LEARNING,
     MODELS,
     NUMBER,
     ROWS,
-    SPLIT_X,
-    SPLIT_Z,
+    SPLITS,
     WEIGHT_PA,
     WIDTH,
 )
 from made.synthetic_bed import rolling_bed, write_run
-from make_film import make_film
+from make_film import Halves, make_film
 from measure_mixing import measure_mixing
 from parse_dumps import parse_dumps
 from plot_discussion import plot_discussion
@@ -36,13 +38,12 @@ from plot_stationarity import plot_stationarity
 GROUPS = ("left", "right", "low", "up")
 DPI = 60
 LAG = 0.025
-COMPARISON = dict(zip(("start_s", "end_s"), COMPARE, strict=True))
 COLOURS = {"dem": "#222222", "static": "#ee6677", "dynamic": "#4477aa"}
 SIZES, LAGS = [0.01, 0.02, 0.04], [0.025, 0.1, 0.3]
 
 
 def forms(folder, name):
-    return [folder / f"{name}.{form}" for form in ("png", "pdf", "csv")]
+    return FigureFiles(*(folder / f"{name}.{form}" for form in ("png", "pdf", "csv")), DPI)
 
 
 @pytest.fixture(scope="module")
@@ -59,12 +60,12 @@ def repeated(bed, tmp_path_factory):
         parse_dumps(dem, part / "t.npy", part / "t.json", WIDTH, HEIGHT, progress=False)
         curves.append(part / "mixing.csv")
         measure_mixing(
-            part / "t.npy", part / "t.json", curves[-1], f"dem_{number}", *COMPARE, SPLIT_X, SPLIT_Z
+            BedFiles(part / "t.npy", part / "t.json"), curves[-1], f"dem_{number}", COMPARE, SPLITS
         )
     mixing, metrics = folder / "mixing.csv", folder / "metrics.csv"
     compare_mixing(
-        *bed.frames, bed.chains, bed.series, mixing, metrics, *COMPARE, SPLIT_X, SPLIT_Z, BATCH, *LEARN,
-        WEIGHT_PA, curves,
+        bed.files, bed.chain_files, SolverSeries(bed.series, LEARN, WEIGHT_PA), curves,
+        Tables(mixing, metrics), COMPARE, SPLITS, BATCH,
     )  # fmt: skip
     return mixing, metrics
 
@@ -85,7 +86,7 @@ def test_repeats_are_in_the_table_and_give_the_noise_floor(repeated):
 
 
 def test_fig5_has_the_band_of_all_realisations(repeated, bed, tmp_path):
-    plot_mixing(*repeated, bed.chains, *forms(tmp_path, "fig5a"), "radial", COLOURS, DPI)
+    plot_mixing(*repeated, bed.chain_files, forms(tmp_path, "fig5a"), "radial", COLOURS)
     table = pd.read_csv(tmp_path / "fig5a.csv")
     dem = table[table["source"] == "dem"].set_index(["group", "time_s"])
     runs = table[table["source"].isin(["dem", "dem_1", "dem_2"])].groupby(["group", "time_s"])
@@ -100,8 +101,8 @@ def discussion(bed, tmp_path_factory):
     """Table of the small bed; a lag of 0.3 s does not divide the comparison."""
     file = tmp_path_factory.mktemp("discussion") / "discussion.csv"
     discuss_errors(
-        bed.trajectory, bed.metadata, bed.mixing, file, LEARNING, COMPARISON, SPLIT_X, SPLIT_Z,
-        COLUMNS, ROWS, LAG, "pooled", list(MODELS), SIZES, LAGS,
+        bed.files, bed.mixing, file, LEARN, COMPARE, SPLITS,
+        CaseChains(COLUMNS, ROWS, LAG, "pooled"), Scanned(list(MODELS), SIZES, LAGS),
     )  # fmt: skip
     return file
 
@@ -136,29 +137,31 @@ def test_larger_cells_add_what_theory_says(discussion):
 
 
 def test_discussion_is_drawn_for_its_own_cells_only(discussion, tmp_path):
-    plot_discussion(discussion, *forms(tmp_path, "fig"), 0.01, LAG, COLOURS, DPI)
-    assert all(file.stat().st_size > 1000 for file in forms(tmp_path, "fig"))
+    plot_discussion(discussion, forms(tmp_path, "fig"), 0.01, LAG, COLOURS)
+    files = forms(tmp_path, "fig")
+    assert all(file.stat().st_size > 1000 for file in (files.png, files.pdf, files.csv))
     with pytest.raises(UserError, match="other cells or another lag"):
-        plot_discussion(discussion, *forms(tmp_path, "fig"), 0.07, LAG, COLOURS, DPI)
+        plot_discussion(discussion, forms(tmp_path, "fig"), 0.07, LAG, COLOURS)
 
 
 def test_rolls_are_steady(bed, tmp_path):
     plot_stationarity(
-        bed.series, bed.trajectory, bed.metadata, tmp_path / "s.csv", *forms(tmp_path, "fig"),
-        LEARN[0], COMPARE[1], SPLIT_X, SPLIT_Z, 0.01, DIAMETER, DIAMETER, DPI,
+        bed.series, bed.files, tmp_path / "s.csv", forms(tmp_path, "fig"),
+        Window(LEARN.start_s, COMPARE.end_s), SPLITS, 0.01, Slab(DIAMETER, DIAMETER),
     )  # fmt: skip
     table = pd.read_csv(tmp_path / "s.csv").set_index("quantity")
     assert table.loc["pressure_drop", "mean"] == pytest.approx(WEIGHT_PA, rel=0.02)
     assert table.loc["pressure_drop", "stationary_1"] == 1
     assert (table.loc["voidage", "height_m"] < 0.13).all()
-    assert all(file.stat().st_size > 1000 for file in forms(tmp_path, "fig"))
+    files = forms(tmp_path, "fig")
+    assert all(file.stat().st_size > 1000 for file in (files.png, files.pdf, files.csv))
 
 
 def test_film_shows_every_step_and_moves(bed, tmp_path):
     film = tmp_path / "film.mp4"
     make_film(
-        *bed.frames, bed.transitions["static"], film, *COMPARE, SPLIT_X, DIAMETER, DIAMETER, 0.01,
-        ["#4477aa", "#ee7733"], seed=1, progress=False,
+        bed.files, bed.transitions["static"], film, COMPARE,
+        Halves(SPLITS.split_x_m, ["#4477aa", "#ee7733"]), Slab(DIAMETER, DIAMETER), 0.01, seed=1,
     )  # fmt: skip
     frames = imageio_ffmpeg.read_frames(str(film))
     wide, high = next(frames)["size"]

@@ -10,9 +10,13 @@ import pytest
 
 import score_models as stage
 from bedchain.errors import UserError
+from bedchain.measures.batch import Batch
+from bedchain.measures.mixing import Splits
 from bedchain.studies.scores import selection
 from bedchain.studies.scores.candidates import Candidate
-from made.drawings import DPI, assert_drawn, outputs
+from bedchain.trajectory.frames import Window
+from bedchain.trajectory.store import BedFiles
+from made.drawings import assert_drawn, outputs
 from made.persistent_walk import squared, write, write_bed
 from plot_autocorrelation import plot_autocorrelation
 from plot_best_mixing import plot_best_mixing
@@ -20,8 +24,7 @@ from plot_pareto import plot_pareto
 
 SIZE, NUMBER, FRAMES = 0.1, 3000, 141
 MEMORY_S, SPEED = 0.2, 0.15
-LEARNING = {"start_s": 0.25, "end_s": 1.75}
-COMPARISON = {"start_s": 1.75, "end_s": 3.25}
+LEARNING, COMPARISON = Window(0.25, 1.75), Window(1.75, 3.25)
 MOMENTS = [0.05, 0.3, 0.55]
 TRIED = [
     Candidate("static", 10, 10, 1),
@@ -39,9 +42,10 @@ def scored(folder, trajectory, repeats=(), tried=None):
     }  # fmt: skip
     paths = SimpleNamespace(**{key: folder / name for key, name in names.items()})
     stage.score_models(
-        trajectory, trajectory.with_suffix(".json"), list(repeats), *vars(paths).values(),
-        LEARNING, COMPARISON, 10, 10, 1e-3, 0.025, "pooled", SIZE / 2, SIZE / 2, 0.03, MOMENTS, 5,
-        TRIED if tried is None else tried,
+        BedFiles(trajectory, trajectory.with_suffix(".json")), list(repeats),
+        stage.ScoreFiles(**vars(paths)), LEARNING, COMPARISON,
+        stage.Observed(Splits(SIZE / 2, SIZE / 2), Batch(0.03, MOMENTS)),
+        stage.CaseChains(10, 10, 0.025, "pooled", 5, 1e-3), TRIED if tried is None else tried,
     )  # fmt: skip
     return paths
 
@@ -211,16 +215,16 @@ def test_a_bed_without_velocities_is_scored_from_differences(walkers, tmp_path):
 
 
 def test_figures_of_the_scores_are_drawn(walkers, tmp_path):
-    plot_pareto(walkers.scores, walkers.selection, *outputs(tmp_path, "p"), 0.01, 0.025, DPI)
+    plot_pareto(walkers.scores, walkers.selection, outputs(tmp_path, "p"), 0.01, 0.025)
     pareto = assert_drawn(tmp_path, "p")
     assert len(pareto) == 3 + 2 * 3 and (pareto["cost_s"] > 0).all()
     assert set(pareto["source"]) == {"static", "static_baseline", "velocity_class"}
-    plot_best_mixing(walkers.mixing, walkers.selection, *outputs(tmp_path, "b"), "#222222", "#ee6677", DPI)
+    plot_best_mixing(walkers.mixing, walkers.selection, outputs(tmp_path, "b"), "#222222", "#ee6677")
     curves = assert_drawn(tmp_path, "b")
     assert {"dem", "repeat_1", "repeat_2", "static_baseline", "velocity_class"} < set(curves["source"])
-    plot_autocorrelation(walkers.lagrangian, *outputs(tmp_path, "a"), "#222222", DPI)
+    plot_autocorrelation(walkers.lagrangian, outputs(tmp_path, "a"), "#222222")
     lines = assert_drawn(tmp_path, "a").query("time_s == 0")
     assert lines["autocorrelation_1"].to_numpy() == pytest.approx(1.0)
     with pytest.raises(UserError, match="lacks the DEM"):
         pd.read_csv(walkers.lagrangian).query("source != 'dem'").to_csv(tmp_path / "l.csv")
-        plot_autocorrelation(tmp_path / "l.csv", *outputs(tmp_path, "x"), "#222222", DPI)
+        plot_autocorrelation(tmp_path / "l.csv", outputs(tmp_path, "x"), "#222222")

@@ -12,10 +12,13 @@ import study_tradeoff as stage
 from bedchain.case.load import load_case
 from bedchain.case.variants import Variant
 from bedchain.errors import UserError
+from bedchain.measures.mixing import Splits
 from bedchain.studies.tradeoff import chain_settings, measured_chains, simulated_beds
 from bedchain.studies.tradeoff.bed_variants import BedVariant
 from bedchain.studies.tradeoff.observables import seen_errors
-from made.drawings import DPI, assert_drawn, outputs
+from bedchain.trajectory.frames import Window
+from bedchain.trajectory.store import BedFiles
+from made.drawings import assert_drawn, outputs
 from made.persistent_walk import write, write_bed
 from made.synthetic_bed import write_run, write_series
 from measure_mixing import measure_mixing
@@ -46,8 +49,9 @@ def write_walkers(folder):
     # marked at the same time, which is all that the curves of independent walkers know
     for number in range(1, REPEATS + 1):
         path = folder / "repeats" / str(number)
-        measure_mixing(path / "trajectory.npy", path / "trajectory.json", path / "mixing.csv",
-                       f"dem_{number}", 2.0, 3.5, SIZE / 2, SIZE / 2)  # fmt: skip
+        files = BedFiles(path / "trajectory.npy", path / "trajectory.json")
+        splits = Splits(SIZE / 2, SIZE / 2)
+        measure_mixing(files, path / "mixing.csv", f"dem_{number}", Window(2.0, 3.5), splits)
     (folder / "case.yaml").write_text(yaml.safe_dump(CASE))
 
 
@@ -205,7 +209,7 @@ def test_without_repeats_the_floor_is_empty_and_said(walkers, tmp_path, caplog, 
     assert table["density_floors_1"].notna().all()
     presets = yaml.safe_load((tmp_path / "presets.yaml").read_text())
     assert presets["fast"]["error_floors"] is None
-    plot_tradeoff(tmp_path / "tradeoff.csv", *outputs(tmp_path / "f", "p"), DPI)
+    plot_tradeoff(tmp_path / "tradeoff.csv", outputs(tmp_path / "f", "p"))
     assert set(assert_drawn(tmp_path / "f", "p")["unit"]) == {"share"}
 
 
@@ -215,12 +219,12 @@ def test_a_variant_that_does_not_exist_is_told_the_others(walkers):
 
 
 def test_figures_of_the_study_are_drawn(walkers, tmp_path):
-    plot_tradeoff(walkers.folder / "tradeoff.csv", *outputs(tmp_path / "a", "a"), DPI)
+    plot_tradeoff(walkers.folder / "tradeoff.csv", outputs(tmp_path / "a", "a"))
     drawn = assert_drawn(tmp_path / "a", "a")
     assert len(drawn) == len(walkers.table) and (drawn["own"] == 1).sum() == 1
     assert drawn["mixing_error"].to_numpy() == pytest.approx(walkers.table["mixing_floors_1"].to_numpy())
     with pytest.raises(UserError, match="holds no simulated bed"):
-        plot_variants(walkers.folder / "tradeoff.csv", *outputs(tmp_path / "b", "b"), DPI)
+        plot_variants(walkers.folder / "tradeoff.csv", outputs(tmp_path / "b", "b"))
     case = load_case(walkers.case)
     bench, _ = stage.opened(case, walkers.folder)
     rows = simulated_beds.simulate_all(
@@ -236,7 +240,7 @@ def test_figures_of_the_study_are_drawn(walkers, tmp_path):
         errors = seen_errors(bench.reference, simulated_beds.seen(tmp_path / name, case))
         rows.append(labels | {"cost_s": cost_s} | errors)
     pd.concat([walkers.table.replace("", np.nan), pd.DataFrame(rows)]).to_csv(tmp_path / "t.csv", index=False)
-    plot_variants(tmp_path / "t.csv", *outputs(tmp_path / "b", "b"), DPI)
+    plot_variants(tmp_path / "t.csv", outputs(tmp_path / "b", "b"))
     drawn = assert_drawn(tmp_path / "b", "b").set_index("variant")
     assert drawn["cost_over_base_1"]["friction_0"] == pytest.approx(0.8)
     assert "Rayleigh" in drawn["problem"]["bad"] and drawn["mixing_floors_1"]["base"] > 0

@@ -8,6 +8,10 @@ import pandas as pd
 import pytest
 
 from bedchain.errors import DataError, UserError
+from bedchain.figures.style import FigureFiles
+from bedchain.measures.voidage import Slab
+from bedchain.trajectory.frames import Window
+from bedchain.trajectory.store import BedFiles
 from made.synthetic_bed import STAMP, write_binary_dump
 from parse_dumps import parse_dumps
 from validate_bed import validate_bed
@@ -58,10 +62,10 @@ def validated(bed, tmp_path):
     def run(points, start_s=0.0, end_s=1.0):
         file = tmp_path / "measured.csv"
         points.to_csv(file, index=False)
-        made = [tmp_path / name for name in ("table.csv", "metrics.csv", "v.png", "v.pdf", "v.csv")]
+        files = FigureFiles(tmp_path / "v.png", tmp_path / "v.pdf", tmp_path / "v.csv", 60)
         validate_bed(
-            bed / "trajectory.npy", bed / "trajectory.json", file, *made,
-            start_s, end_s, 2 * RADIUS, WIDTH, DEPTH, 60,
+            BedFiles(bed / "trajectory.npy", bed / "trajectory.json"), file, tmp_path / "table.csv",
+            tmp_path / "metrics.csv", files, Window(start_s, end_s), WIDTH, Slab(DEPTH, 2 * RADIUS),
         )  # fmt: skip
         return tmp_path
 

@@ -7,6 +7,7 @@ with the methods of `Chain` will do as well. Scripts loop over names and know no
 """
 
 from collections.abc import Callable
+from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
 
@@ -43,6 +44,25 @@ RELEARNERS: dict[str, Callable[..., Callable[[NDArray[np.int64]], Chain]]] = {
     "velocity_class": velocity_class.relearner,
     "recurrence": recurrence.relearner,
 }
+
+
+@dataclass(frozen=True)
+class ModelSettings:
+    """Settings of a case's chains besides their grid and lag.
+
+    Attributes
+    ----------
+    estimator : {"literal", "per_step", "pooled"}
+        How counts become probabilities.
+    seed : int
+        Of blocks and of Monte Carlo runs.
+    options : dict
+        Settings of a model only; where there are several models, by their names.
+    """
+
+    estimator: str
+    seed: int
+    options: dict[str, Any] = field(default_factory=dict)
 
 
 def learn(

@@ -1,6 +1,9 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Mixing curves in long form (mixing.csv), and how two of them differ."""
 
+from dataclasses import dataclass
+from pathlib import Path
+
 import numpy as np
 import pandas as pd
 from numpy.typing import NDArray
@@ -37,6 +40,26 @@ def curves_of(table: pd.DataFrame, source: str, n_times: int) -> NDArray[np.floa
             f"{source}: {len(columns[0])} times, {n_times} expected; delete its mixing.csv and run again"
         )
     return np.column_stack([column["fraction_remaining_1"] for column in columns])
+
+
+@dataclass(frozen=True)
+class ChainFiles:
+    """Chains that were run over the comparison window.
+
+    Attributes
+    ----------
+    models : list of str
+        Names.
+    chains : list of Path
+        ``chain_<model>.npz`` of each.
+    """
+
+    models: list[str]
+    chains: list[Path]
+
+    def by_model(self) -> dict[str, Path]:
+        """Name -> file."""
+        return dict(zip(self.models, self.chains, strict=True))
 
 
 def curve_table(times_s: np.ndarray, source: str, remaining: np.ndarray) -> pd.DataFrame:

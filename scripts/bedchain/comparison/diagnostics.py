@@ -17,7 +17,7 @@ from bedchain.chains.passage import arrived, passage_time, residence_in_cells
 from bedchain.measures.batch import total_variation
 from bedchain.measures.dispersion import dispersion_by_height
 from bedchain.measures.mixing import lacey_index
-from bedchain.trajectory.frames import Frames
+from bedchain.trajectory.frames import Frames, Lag
 from bedchain.trajectory.grid import Grid
 
 Row = dict[str, Any]
@@ -157,7 +157,7 @@ def dispersion_rows(source: str, frames: Frames, grid: Grid, lags: Sequence[int]
     rows = []
     for lag in lags:
         lag_s = lag * frames.interval_s
-        found = dispersion_by_height(frames.x_m, frames.z_m, grid.z_edges_m, lag, lag_s)
+        found = dispersion_by_height(frames.x_m, frames.z_m, grid.z_edges_m, Lag(lag, lag_s))
         for layer in np.flatnonzero(found.displacements >= FEWEST_DISPLACEMENTS):
             for column, axis in enumerate("xz"):
                 value, where = found.dispersion_m2_s[layer, column], {"height_m": found.height_m[layer]}
@@ -165,7 +165,7 @@ def dispersion_rows(source: str, frames: Frames, grid: Grid, lags: Sequence[int]
     return rows
 
 
-def lacey_rows(source: str, times_s: NDArray[np.float64], numbers: NDArray[np.int64]) -> list[Row]:
+def lacey_rows(source: str, times_s: NDArray[np.float64], numbers: np.ndarray) -> list[Row]:
     """Lacey's index of the left and of the low particles over time.
 
     Parameters

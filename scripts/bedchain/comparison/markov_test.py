@@ -4,12 +4,10 @@
 import logging
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
-from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
-from bedchain.chains import registry
 from bedchain.chains.chain import Chain
 from bedchain.chains.markov_chain import MarkovChain
 from bedchain.chains.matrix_analysis import implied_timescales
@@ -18,7 +16,6 @@ from bedchain.comparison.forecasts import Sides, Starts, count_starts, counted, 
 from bedchain.errors import DataError
 from bedchain.measures.mixing import GROUPS
 from bedchain.trajectory.frames import Frames
-from bedchain.trajectory.grid import Grid
 from bedchain.uncertainty.bands import band, block_chains
 
 LOG = logging.getLogger(__name__)
@@ -62,36 +59,32 @@ def doubled_lags(lag: int, n_frames: int) -> list[int]:
 
 def check_model(
     name: str,
+    relearner: Callable[[int], Callable[[NDArray[np.int64]], Chain]],
     frames: Frames,
-    grid: Grid,
     sides: Sides,
     lags: Sequence[int],
-    estimator: str,
     block: int,
     rng: np.random.Generator,
-    options: dict[str, Any] | None = None,
 ) -> list[Row]:
     """Implied timescales and Chapman-Kolmogorov test of one model at several lags.
 
     Parameters
     ----------
     name : str
-        A name in `registry.LEARNERS`.
+        Of the model.
+    relearner : callable
+        From a lag, in frames, to a function that learns the model on weighted steps of the frames, such as
+        `registry.relearner` gives.
     frames : Frames
         The learning window.
-    grid : Grid
     sides : Sides
         Of the window.
     lags : sequence of int
         Frames in a step.
-    estimator : {"literal", "per_step", "pooled"}
-        How counts become probabilities.
     block : int
         Frames in a block of the bootstrap.
     rng : numpy Generator
         Draws the blocks.
-    options : dict, optional
-        Settings of this model only.
 
     Returns
     -------
@@ -101,8 +94,7 @@ def check_model(
     """
     rows = []
     for lag in lags:
-        relearn = registry.relearner(name, frames, grid, lag, estimator, **(options or {}))
-        found, replicates, n_states = with_replicates(relearn, frames, sides, lag, block, rng)
+        found, replicates, n_states = with_replicates(relearner(lag), frames, sides, lag, block, rng)
         times = sides.gaps[sides.gaps % lag == 0] * frames.interval_s
         rows += finding_rows(name, lag * frames.interval_s, times, found, replicates)
         if n_states > MOST_STATES:

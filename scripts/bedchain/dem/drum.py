@@ -10,10 +10,10 @@ import pandas as pd
 from bedchain.dem.processes import run_deck
 from bedchain.dem.segments import (
     RESTART,
-    Run,
     Segment,
-    check_frames,
+    SegmentedRun,
     frame_columns,
+    keep_own_frames,
     read_parameters,
     write_record,
 )
@@ -37,12 +37,14 @@ def input_files(case: Path, decks: Path) -> list[Path]:
     return [case / "parameters.lig", *(decks / name for name in (FILL, TUMBLE, WALLS)), *blocks]
 
 
-def run_segment(run: Run, index: int, steps: tuple[int, int], previous: Path, decks: Path) -> Segment:
+def run_segment(
+    run: SegmentedRun, index: int, steps: tuple[int, int], previous: Path, decks: Path
+) -> Segment:
     """Turn the drum over one segment.
 
     Parameters
     ----------
-    run : Run
+    run : SegmentedRun
     index : int
         Of the segment, from 1.
     steps : (int, int)
@@ -73,7 +75,7 @@ def run_segment(run: Run, index: int, steps: tuple[int, int], previous: Path, de
             run_deck(decks / TUMBLE, given | {"output": part}, part / "liggghts.log", run.ranks)
         except UserError as error:
             raise UserError(f"{error}\nlast good state: {previous / RESTART}") from None
-        check_frames(part, run, steps, int(parameters["frame_steps"]), str(parameters["dump_suffix"]))
+        keep_own_frames(part, run, steps, int(parameters["frame_steps"]), str(parameters["dump_suffix"]))
         drum_series(part, parameters).to_csv(part / SERIES, index=False, float_format="%.10g")
         wall = time.monotonic() - began
         segment = Segment(index, *steps, name, wall, wall, 0.0, 0.0)

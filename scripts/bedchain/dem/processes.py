@@ -66,7 +66,12 @@ def _end_with_parent() -> None:
     ctypes.CDLL(None).prctl(PR_SET_PDEATHSIG, signal.SIGTERM)
 
 
-def run_logged(command: list[str], log: Path, each_line: Callable[[str], None] | None = None) -> None:
+def run_logged(
+    command: list[str],
+    log: Path,
+    each_line: Callable[[str], None] | None = None,
+    variables: Mapping[str, str] | None = None,
+) -> None:
     """Run a command to its end, its output into `log`.
 
     Parameters
@@ -77,6 +82,8 @@ def run_logged(command: list[str], log: Path, each_line: Callable[[str], None] |
         Gets stdout and stderr, appended.
     each_line : callable, optional
         Called with each line of the output.
+    variables : mapping of str to str, optional
+        Environment variables of the program besides those of `solver_environment`.
 
     Raises
     ------
@@ -95,7 +102,7 @@ def run_logged(command: list[str], log: Path, each_line: Callable[[str], None] |
             stderr=subprocess.STDOUT,
             text=True,
             errors="replace",
-            env=solver_environment(),
+            env=solver_environment() | dict(variables or {}),
             preexec_fn=_end_with_parent,
         )
         try:

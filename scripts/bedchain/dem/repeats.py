@@ -6,7 +6,7 @@ from typing import Any
 
 from bedchain.dem.gas_case import copy_last_state, cut_for_ranks
 from bedchain.dem.processes import run_deck
-from bedchain.dem.segments import RESTART, Run
+from bedchain.dem.segments import RESTART, SegmentedRun
 from bedchain.errors import UserError
 from bedchain.files import whole_folder
 from bedchain.physics.whole_numbers import is_prime
@@ -73,14 +73,14 @@ def segment_that_ends(manifest: dict[str, Any], time_s: float) -> Path:
     return ends[nearest]
 
 
-def perturb(run: Run, segment: Path, decks: Path, seed: int, speed_m_s: float = KICK_M_S) -> None:
+def perturb(run: SegmentedRun, segment: Path, decks: Path, seed: int, speed_m_s: float = KICK_M_S) -> None:
     """Leave a perturbed copy of a segment's last state, of particles and gas, as a run's origin.
 
     The segment may be of a run on other ranks.
 
     Parameters
     ----------
-    run : Run
+    run : SegmentedRun
         Its ``state`` gets the folder ``origin``; one that is there stays.
     segment : Path
         Folder with ``particles.restart`` and ``gas``.

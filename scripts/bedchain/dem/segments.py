@@ -21,7 +21,7 @@ COLUMNS = {0: ["id", "x", "z", "vx", "vz"], 1: ["id", "x", "y", "z", "vx", "vy",
 
 
 @dataclass(frozen=True)
-class Run:
+class SegmentedRun:
     """One simulation in segments.
 
     Attributes
@@ -133,7 +133,9 @@ def write_record(folder: Path, segment: Segment) -> None:
     (folder / RECORD).write_text(json.dumps(asdict(segment), indent=1), encoding="utf-8")
 
 
-def check_frames(folder: Path, run: Run, steps: tuple[int, int], frame_steps: int, suffix: str) -> None:
+def keep_own_frames(
+    folder: Path, run: SegmentedRun, steps: tuple[int, int], frame_steps: int, suffix: str
+) -> None:
     """Keep exactly the frames that a segment owns: after its start, up to its end, and the run's very first.
 
     A segment's first frame is the last one of the segment before; LIGGGHTS writes it again.
@@ -155,12 +157,12 @@ def check_frames(folder: Path, run: Run, steps: tuple[int, int], frame_steps: in
             )
 
 
-def manifest(run: Run, segments: list[Segment]) -> dict[str, object]:
+def manifest(run: SegmentedRun, segments: list[Segment]) -> dict[str, object]:
     """What ``dem.json`` says: all frames up to the end in order, and the segments that hold them.
 
     Parameters
     ----------
-    run : Run
+    run : SegmentedRun
     segments : list of Segment
         That reach the end.
     """

@@ -3,6 +3,7 @@
 
 from collections.abc import Iterator
 from contextlib import contextmanager
+from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
@@ -56,6 +57,30 @@ def figure_style() -> Iterator[None]:
             yield
         finally:
             plt.close("all")
+
+
+@dataclass(frozen=True)
+class FigureFiles:
+    """Files of a figure to make.
+
+    Attributes
+    ----------
+    png, pdf : Path
+        The figure in two forms.
+    csv : Path
+        Numbers behind it.
+    resolution_dpi : int
+        Of the png, and of pixels inside the pdf [dots per inch].
+    """
+
+    png: Path
+    pdf: Path
+    csv: Path
+    resolution_dpi: int
+
+    def save(self, figure: Figure) -> None:
+        """Save a figure in both forms; see `save_figure`."""
+        save_figure(figure, self.png, self.pdf, self.resolution_dpi)
 
 
 def save_figure(figure: Figure, png: Path, pdf: Path, resolution_dpi: int) -> None:

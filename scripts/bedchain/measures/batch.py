@@ -1,12 +1,30 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Where a batch of particles is: the batch itself, and its distribution over the cells."""
 
+from dataclasses import dataclass
+
 import numpy as np
 from numpy.typing import NDArray
 
 from bedchain.errors import UserError
 from bedchain.trajectory.cell_store import CellStore, frame_at
 from bedchain.trajectory.grid import Grid
+
+
+@dataclass(frozen=True)
+class Batch:
+    """The batch of Figs. 3 and 4, and when it is looked at.
+
+    Attributes
+    ----------
+    batch_height_m : float
+        The batch is what is in the rows of cells below this height at the start [m].
+    moments_s : list of float
+        Rising times after the start [s].
+    """
+
+    batch_height_m: float
+    moments_s: list[float]
 
 
 def batch_of(grid: Grid, cells: np.ndarray, height_m: float) -> np.ndarray:

@@ -7,6 +7,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from bedchain.errors import DataError
+from bedchain.trajectory.frames import Lag
 
 
 @dataclass(frozen=True)
@@ -32,7 +33,7 @@ class Dispersion:
 
 
 def dispersion_by_height(
-    x_m: NDArray[np.floating], z_m: NDArray[np.floating], edges_m: NDArray[np.float64], lag: int, lag_s: float
+    x_m: NDArray[np.floating], z_m: NDArray[np.floating], edges_m: NDArray[np.float64], lag: Lag
 ) -> Dispersion:
     """Drift and dispersion coefficients of layers, from displacements over one lag.
 
@@ -42,10 +43,7 @@ def dispersion_by_height(
         Positions [m].
     edges_m : (n_layers + 1,) array
         Rising heights that bound the layers [m]; particles outside them do not count.
-    lag : int
-        Frames in a displacement.
-    lag_s : float
-        The same [s].
+    lag : Lag
 
     Returns
     -------
@@ -57,22 +55,25 @@ def dispersion_by_height(
     DataError
         No displacement fits into the frames.
     """
-    if not 1 <= lag < len(x_m):
+    if not 1 <= lag.frames < len(x_m):
         raise DataError(
-            f"{len(x_m)} frames hold no displacement over {lag} frames: widen the window or cut the lag"
+            f"{len(x_m)} frames hold no displacement over {lag.frames} frames: "
+            "widen the window or cut the lag"
         )
     n_layers = len(edges_m) - 1
     number = np.zeros(n_layers + 2)
     sums, squares = np.zeros((2, n_layers + 2)), np.zeros((2, n_layers + 2))
-    for frame in range(len(x_m) - lag):
+    for frame in range(len(x_m) - lag.frames):
         layer = np.digitize(z_m[frame], edges_m)
         number += np.bincount(layer, minlength=n_layers + 2)
         for axis, place in enumerate((x_m, z_m)):
-            step = np.subtract(place[frame + lag], place[frame], dtype=np.float64)
+            step = np.subtract(place[frame + lag.frames], place[frame], dtype=np.float64)
             sums[axis] += np.bincount(layer, step, n_layers + 2)
             squares[axis] += np.bincount(layer, step**2, n_layers + 2)
     seen = np.where(number > 0, number, np.nan)[1:-1]
     mean = sums[:, 1:-1] / seen
     variance = np.maximum(squares[:, 1:-1] / seen - mean**2, 0.0)
     middle = 0.5 * (edges_m[:-1] + edges_m[1:])
-    return Dispersion(middle, number[1:-1].astype(np.int64), (mean / lag_s).T, (variance / (2 * lag_s)).T)
+    return Dispersion(
+        middle, number[1:-1].astype(np.int64), (mean / lag.seconds).T, (variance / (2 * lag.seconds)).T
+    )

@@ -13,6 +13,7 @@ from numpy.typing import NDArray
 
 from bedchain.errors import DataError
 from bedchain.measures.dispersion import dispersion_by_height
+from bedchain.trajectory.frames import Lag
 from bedchain.trajectory.grid import Grid
 
 Array = NDArray[np.float64]
@@ -121,7 +122,7 @@ def statistics(places: Places, steps: NDArray[np.integer], span: int, edges_m: A
                 squared[row, column, axis] = np.mean((later - begin) ** 2)
                 product[row, column, axis] = np.mean(first * (place[origin + step + span] - later))
     span_s = span * places.interval_s
-    found = dispersion_by_height(places.x_m, places.z_m, edges_m, span, span_s)
+    found = dispersion_by_height(places.x_m, places.z_m, edges_m, Lag(span, span_s))
     return Statistics(
         np.asarray(steps * places.interval_s, float),
         _by_block(squared),

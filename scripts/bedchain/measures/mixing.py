@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Mixing of marked groups: how many are still on their side, and how evenly they are spread."""
 
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 from numba import njit
@@ -12,6 +12,19 @@ from bedchain.trajectory.grid import Grid
 
 # (direction, group) in the order of every array with an axis of 4 here.
 GROUPS = (("radial", "left"), ("radial", "right"), ("axial", "low"), ("axial", "up"))
+
+
+class Splits(NamedTuple):
+    """Lines at which the marked groups meet.
+
+    Attributes
+    ----------
+    split_x_m, split_z_m : float
+        Between left and right, and between low and up [m].
+    """
+
+    split_x_m: float
+    split_z_m: float
 
 
 def sides(

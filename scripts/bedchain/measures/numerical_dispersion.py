@@ -14,6 +14,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from bedchain.errors import DataError
+from bedchain.trajectory.frames import Lag
 from bedchain.trajectory.grid import Grid
 
 # displacements are seen from at most about so many frames, evenly spaced: enough for three digits
@@ -38,9 +39,7 @@ class Spreading(NamedTuple):
     added: NDArray[np.float64]
 
 
-def spreading(
-    x_m: NDArray[np.floating], z_m: NDArray[np.floating], grid: Grid, lag: int, lag_s: float
-) -> Spreading:
+def spreading(x_m: NDArray[np.floating], z_m: NDArray[np.floating], grid: Grid, lag: Lag) -> Spreading:
     """Dispersion of particles and of their cells, and the theory of the difference.
 
     Parameters
@@ -48,10 +47,7 @@ def spreading(
     x_m, z_m : (n_frames, n_particles) array
         Positions [m].
     grid : Grid
-    lag : int
-        Frames in a displacement.
-    lag_s : float
-        The same [s].
+    lag : Lag
 
     Returns
     -------
@@ -62,14 +58,14 @@ def spreading(
     DataError
         No displacement fits into the frames.
     """
-    if not 1 <= lag < len(x_m):
-        raise DataError(f"{len(x_m)} frames hold no displacement over {lag} frames: cut the lag")
+    if not 1 <= lag.frames < len(x_m):
+        raise DataError(f"{len(x_m)} frames hold no displacement over {lag.frames} frames: cut the lag")
     found = np.empty((3, 2))
     for axis, (place, size) in enumerate(((x_m, grid.cell_width_m), (z_m, grid.cell_height_m))):
         moments = np.zeros(5)
-        starts = range(0, len(place) - lag, max(1, (len(place) - lag) // STARTS))
+        starts = range(0, len(place) - lag.frames, max(1, (len(place) - lag.frames) // STARTS))
         for frame in starts:
-            now, later = (np.asarray(place[at], np.float64) / size for at in (frame, frame + lag))
+            now, later = (np.asarray(place[at], np.float64) / size for at in (frame, frame + lag.frames))
             step = later - now
             jump = np.floor(later) - np.floor(now)
             part = np.abs(step) % 1.0
@@ -82,5 +78,5 @@ def spreading(
             )
         moments /= len(starts)
         variances = moments[1] - moments[0] ** 2, moments[3] - moments[2] ** 2, moments[4]
-        found[:, axis] = np.array(variances) * size**2 / (2 * lag_s)
+        found[:, axis] = np.array(variances) * size**2 / (2 * lag.seconds)
     return Spreading(*found)

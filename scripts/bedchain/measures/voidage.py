@@ -1,8 +1,24 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Voidage of a one-layer bed by height."""
 
+from dataclasses import dataclass
+
 import numpy as np
 from numpy.typing import NDArray
+
+
+@dataclass(frozen=True)
+class Slab:
+    """What the voidage of a slab of equal spheres depends on besides their places.
+
+    Attributes
+    ----------
+    thickness_m, diameter_m : float
+        Of the slab, of a particle [m].
+    """
+
+    thickness_m: float
+    diameter_m: float
 
 
 def profiles(

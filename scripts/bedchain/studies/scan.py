@@ -17,7 +17,7 @@ from numpy.typing import NDArray
 
 from bedchain.chains import registry
 from bedchain.chains.chain import Chain
-from bedchain.measures.mixing import remaining_from_positions
+from bedchain.measures.mixing import Splits, remaining_from_positions
 from bedchain.studies.records import record_of, remembered
 from bedchain.studies.scores.candidates import Candidate, grid_of
 from bedchain.studies.scores.marked_starts import Start
@@ -45,8 +45,7 @@ class Task:
     ----------
     grid : Grid
         The case's cells.
-    splits : (float, float)
-        Lines between left and right, low and up [m].
+    splits : Splits
     estimator : str
         How counts become probabilities.
     spacing : int
@@ -56,7 +55,7 @@ class Task:
     """
 
     grid: Grid
-    splits: tuple[float, float]
+    splits: Splits
     estimator: str
     spacing: int
     comparison: int
@@ -120,14 +119,14 @@ def learned(candidate: Candidate, frames: Frames, task: Task) -> Chain:
     )
 
 
-def observed_curves(run: Realisation, start: Start, splits: tuple[float, float]) -> NDArray[np.float64]:
+def observed_curves(run: Realisation, start: Start, splits: Splits) -> NDArray[np.float64]:
     """The DEM's own mixing curves from a start, (length + 1, 4)."""
     values = run.values[start.frame : start.last + 1]
     return remaining_from_positions(values[:, 0], values[:, 1], *splits)
 
 
 def predicted_curves(
-    chain: Chain, run: Realisation, start: Start, lag: int, splits: tuple[float, float]
+    chain: Chain, run: Realisation, start: Start, lag: int, splits: Splits
 ) -> NDArray[np.float64]:
     """A chain's expected mixing curves from a start, at every frame, (length + 1, 4).
 

@@ -2,6 +2,7 @@
 """Consecutive frames of the same particles: what a chain learns from and starts from."""
 
 from dataclasses import dataclass
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -62,6 +63,23 @@ class Frames:
             None if self.vx_m_s is None else self.vx_m_s[which],
             None if self.vz_m_s is None else self.vz_m_s[which],
         )
+
+
+class Window(NamedTuple):
+    """A stretch of time, both ends included.
+
+    Attributes
+    ----------
+    start_s, end_s : float
+        Ends [s]; each must be the time of a frame.
+    """
+
+    start_s: float
+    end_s: float
+
+    def frames(self, times_s: NDArray[np.float64]) -> slice:
+        """The frames in it; see `window`."""
+        return window(times_s, self.start_s, self.end_s)
 
 
 def check_times(times_s: NDArray[np.float64]) -> None:
@@ -131,6 +149,26 @@ def window(times_s: NDArray[np.float64], start_s: float, end_s: float) -> slice:
     if ends[0] == ends[1]:
         raise DataError(f"the window from {start_s:g} s to {end_s:g} s holds one frame: two are needed")
     return slice(ends[0], ends[1] + 1)
+
+
+class Lag(NamedTuple):
+    """A lag between two frames.
+
+    Attributes
+    ----------
+    frames : int
+        Frames between them.
+    seconds : float
+        The same as a time [s].
+    """
+
+    frames: int
+    seconds: float
+
+    @classmethod
+    def of(cls, lag_s: float, interval_s: float) -> "Lag":
+        """The lag of a time [s] between frames so far apart [s]; see `lag_frames`."""
+        return cls(lag_frames(lag_s, interval_s), lag_s)
 
 
 def lag_frames(lag_s: float, interval_s: float) -> int:

@@ -10,9 +10,9 @@ from numpy.typing import NDArray
 
 from bedchain.errors import DataError, UserError
 from bedchain.trajectory.cell_store import CellStore, frame_at, open_cells
-from bedchain.trajectory.frames import TIME_TOLERANCE, Frames, check_times, window
+from bedchain.trajectory.frames import TIME_TOLERANCE, Frames, Window, check_times, window
 from bedchain.trajectory.grid import Grid
-from bedchain.trajectory.store import open_trajectory
+from bedchain.trajectory.store import BedFiles, open_trajectory
 
 LOG = logging.getLogger(__name__)
 
@@ -61,15 +61,26 @@ class Realisation:
         return float(self.times_s[-1] - self.times_s[0]) / max(len(self.times_s) - 1, 1)
 
     @property
-    def grid(self) -> Grid:
-        """Grid of the stored cells."""
+    def case_cells(self) -> CellStore:
+        """The stored cells.
+
+        Raises
+        ------
+        DataError
+            It was opened without them.
+        """
         if self.stored is None:
             raise DataError(f"{self.name} was opened without its cells")
-        return self.stored.grid
+        return self.stored
 
-    def window(self, start_s: float, end_s: float) -> Frames:
-        """Frames of a window, both ends included [s], with the stored cells; memory maps."""
-        return self.frames(self.grid, window(self.times_s, start_s, end_s))
+    @property
+    def grid(self) -> Grid:
+        """Grid of the stored cells."""
+        return self.case_cells.grid
+
+    def window(self, window: Window) -> Frames:
+        """Frames of a window, with the stored cells; memory maps."""
+        return self.frames(self.grid, window.frames(self.times_s))
 
     def frames(self, grid: Grid, which: slice) -> Frames:
         """Frames of a slice, with their cells on a grid.
@@ -185,6 +196,11 @@ def open_realisation(name: str, trajectory: Path, metadata: Path, cells: Path | 
         raise UserError(f"{trajectory} and {cells} differ in frames or particles: run assign_cells again")
     size = float(about["width_m"]), float(about["height_m"])
     return Realisation(name, values, times, *size, has, stored=stored)
+
+
+def open_bed(bed: BedFiles) -> Realisation:
+    """`open_realisation` of the run of a case."""
+    return open_realisation("the run", bed.trajectory, bed.metadata, bed.cells)
 
 
 def open_repeats(paths: list[Path], main: Realisation) -> list[Realisation]:

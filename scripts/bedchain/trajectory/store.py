@@ -5,6 +5,7 @@ import json
 import logging
 import re
 import shutil
+from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
@@ -21,6 +22,27 @@ STORED = ("x", "z", "vx", "vz")
 # frames are multiples of the DEM step; their times differ from the grid by round-off only
 TIME_TOLERANCE = 1e-6
 DISK_RESERVE_BYTES = 50_000_000
+
+
+@dataclass(frozen=True)
+class BedFiles:
+    """A trajectory on disk, and the cells of its particles.
+
+    Attributes
+    ----------
+    trajectory, metadata : Path
+        ``trajectory.npy`` and ``trajectory.json``.
+    cells : Path, optional
+        ``cells.npz``, where they are needed.
+    """
+
+    trajectory: Path
+    metadata: Path
+    cells: Path | None = None
+
+    def open(self) -> tuple[np.ndarray, dict[str, Any]]:
+        """See `open_trajectory`."""
+        return open_trajectory(self.trajectory, self.metadata)
 
 
 def read_manifest(path: Path) -> dict[str, Any]:

@@ -8,6 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from bedchain.measures.batch import batch_of, share_by_cell
+from bedchain.measures.mixing import Splits
 from bedchain.studies.scan import observed_curves
 from bedchain.studies.scores.marked_starts import Start, starts_in
 from bedchain.trajectory.grid import Grid
@@ -111,7 +112,7 @@ class HeldOut:
 
 def hold_out(
     runs: Sequence[Realisation], grid: Grid, comparison_s: tuple[float, float], spacing: int,
-    splits: tuple[float, float], batch_height_m: float, moments_s: Sequence[float],
+    splits: Splits, batch_height_m: float, moments_s: Sequence[float],
 ) -> HeldOut:  # fmt: skip
     """Collect what the DEM does in the comparison window of each run.
 
@@ -125,8 +126,7 @@ def hold_out(
         Start and end of the comparison window [s].
     spacing : int
         Frames between starts.
-    splits : (float, float)
-        Lines between left and right, low and up [m].
+    splits : Splits
     batch_height_m : float
         Height of the batch [m].
     moments_s : sequence of float

@@ -2,7 +2,7 @@
 """Settings of the chains, each for every model that it applies to."""
 
 from collections.abc import Callable, Iterator
-from dataclasses import replace
+from dataclasses import dataclass, field, replace
 from functools import partial
 from pathlib import Path
 from typing import Any
@@ -43,21 +43,58 @@ Build = Callable[[], ChainCase]
 Learn = Callable[..., Chain]
 
 
-def case(
-    columns: int = 4, rows: int = 6, n_frames: int = FRAMES, n_particles: int = PARTICLES, lag: int = 1,
-    steps: int = 40, change: Callable[[Frames], Frames] | None = None, top: float = 1.0, copies: int = 1,
-    lift: float = 0.0, settled: bool = False, options: dict[str, Any] | None = None,
-) -> ChainCase:  # fmt: skip
-    """A window of made-up frames on a grid, and what leads up to a start: its own last frames."""
-    grid = Grid(WIDTH, HEIGHT, columns, rows)
-    frames = walkers(n_frames, n_particles, top=top)
-    frames = on_grid(change(frames) if change else frames, grid)
-    start = frames.part(slice(-min(n_frames, lag + 1), None))
-    if lift:
-        start = on_grid(lifted(start, lift), grid)
-    if copies > 1:
-        start = repeated(start, copies)
-    return ChainCase(frames, grid, start, lag, steps, settled, options or {})
+@dataclass(frozen=True)
+class MadeUpWindow:
+    """A window of made-up frames on a grid, and the start that a chain is run from.
+
+    Attributes
+    ----------
+    columns, rows : int
+        Of the grid.
+    n_frames, n_particles : int
+        Of the window.
+    lag, steps : int
+        Frames in a step of the chain, and its steps.
+    change : callable, optional
+        Makes other frames of the walkers.
+    top : float
+        Share of the bed's height that the walkers use.
+    copies : int
+        So many times the particles of the window start.
+    lift : float
+        How much higher they start, as a share of the bed's height.
+    settled : bool
+        Nothing can change any more.
+    options : dict
+        Of the model only.
+    """
+
+    columns: int = 4
+    rows: int = 6
+    n_frames: int = FRAMES
+    n_particles: int = PARTICLES
+    lag: int = 1
+    steps: int = 40
+    change: Callable[[Frames], Frames] | None = None
+    top: float = 1.0
+    copies: int = 1
+    lift: float = 0.0
+    settled: bool = False
+    options: dict[str, Any] = field(default_factory=dict)
+
+
+def case(**keys: Any) -> ChainCase:
+    """The case of a `MadeUpWindow` with these fields; what leads up to a start is its own last frames."""
+    given = MadeUpWindow(**keys)
+    grid = Grid(WIDTH, HEIGHT, given.columns, given.rows)
+    frames = walkers(given.n_frames, given.n_particles, top=given.top)
+    frames = on_grid(given.change(frames) if given.change else frames, grid)
+    start = frames.part(slice(-min(given.n_frames, given.lag + 1), None))
+    if given.lift:
+        start = on_grid(lifted(start, given.lift), grid)
+    if given.copies > 1:
+        start = repeated(start, given.copies)
+    return ChainCase(frames, grid, start, given.lag, given.steps, given.settled, given.options)
 
 
 def no_limit() -> Limit:

@@ -9,6 +9,7 @@ from typing import Any
 from bedchain.case.presets import count_near
 from bedchain.chains.estimators import ESTIMATORS
 from bedchain.errors import DataError
+from bedchain.measures.mixing import Splits
 from bedchain.studies.scores.candidates import Candidate
 from bedchain.trajectory.frames import lag_frames
 from bedchain.trajectory.grid import Grid
@@ -87,8 +88,7 @@ class Own:
         Between two frames [s].
     diameter_m : float
         Of a particle: no cell is smaller [m].
-    splits : (float, float)
-        Lines between left and right, low and up [m].
+    splits : Splits
     models : tuple of str
         The case's, those of the paper among which are studied.
     """
@@ -100,7 +100,7 @@ class Own:
     compared: int
     interval_s: float
     diameter_m: float
-    splits: tuple[float, float]
+    splits: Splits
     models: tuple[str, ...] = ("static", "dynamic")
 
     @property

@@ -13,10 +13,12 @@ from bedchain.comparison.curves import curves_of
 from bedchain.dem.series import read_series
 from bedchain.measures.batch import share_by_cell
 from bedchain.measures.dispersion import dispersion_by_height
+from bedchain.measures.mixing import Splits
 from bedchain.studies.scan import observed_curves
 from bedchain.studies.scores.marked_starts import Start
 from bedchain.studies.scores.tested_chain import SPAN_S
 from bedchain.studies.tradeoff.observables import Reference
+from bedchain.trajectory.frames import Lag
 from bedchain.trajectory.grid import Grid
 from bedchain.trajectory.realisations import Realisation, part_of
 from bedchain.uncertainty.deviations import stacked
@@ -26,9 +28,9 @@ Array = NDArray[np.float64]
 MIXED = float(np.exp(-1.0))
 
 
-def splits_of(case: Case) -> tuple[float, float]:
+def splits_of(case: Case) -> Splits:
     """Lines between left and right, low and up [m]."""
-    return case["mixing"]["split_x_m"], case["mixing"]["split_z_m"]
+    return Splits(**case["mixing"])
 
 
 def compared(run: Realisation, case: Case) -> slice:
@@ -83,7 +85,7 @@ def scalars_seen(run: Realisation, series: pd.DataFrame | None, case: Case) -> d
     }
     x, z, vx, vz = (run.values[which, row] for row in range(4))
     lag = max(1, min(round(SPAN_S / run.interval_s), len(x) - 1))
-    layers = dispersion_by_height(x, z, grid.z_edges_m, lag, lag * run.interval_s)
+    layers = dispersion_by_height(x, z, grid.z_edges_m, Lag(lag, lag * run.interval_s))
     weights, filled = layers.displacements, layers.displacements > 0
     for column, axis in enumerate("xz"):
         values = layers.dispersion_m2_s[filled, column]
