@@ -4,7 +4,7 @@ import pytest
 
 from bedchain.chains import dynamic, registry
 from bedchain.chains.chain import Chain
-from bedchain.chains.counting import Counts, count_moves, count_pairs, merge
+from bedchain.chains.counting import count_moves
 from bedchain.chains.estimators import ESTIMATORS
 from bedchain.errors import DataError
 from bedchain.trajectory.frames import Frames
@@ -121,17 +121,18 @@ def test_dynamic_matrix_agrees_with_a_loop_over_pairs():
     assert np.allclose(found, expected, atol=1e-9)
 
 
-def test_merged_parts_make_the_same_dynamic_chain():
+def test_every_step_counted_twice_makes_the_same_dynamic_chain():
     frames, grid = stirred(9)
-    cells = frames.cells
-
-    def parts(count) -> Counts:
-        return merge([count(cells, grid.n_cells, first=low, last=low + 10) for low in range(0, 60, 10)][:6])
-
+    n_steps = len(frames.times_s) - 1
     whole = registry.learn("dynamic", frames, grid)
-    joined = dynamic.from_counts(parts(count_pairs), parts(count_moves), grid, 0.025)
+    twice = registry.learn("dynamic", frames, grid, step_weights=np.full(n_steps, 2))
+    parts = [
+        registry.learn("dynamic", frames, grid, step_weights=part.astype(int))
+        for part in (np.arange(n_steps) < 30, np.arange(n_steps) >= 30)
+    ]
     for key, array in whole.arrays().items():
-        assert (array == joined.arrays()[key]).all(), key
+        assert key == "report" or (array == twice.arrays()[key]).all(), key
+    assert (np.union1d(*(part.state_keys for part in parts)) == whole.state_keys).all()
 
 
 def test_a_pair_entered_only_at_the_end_moves_on_as_its_cell_does():
