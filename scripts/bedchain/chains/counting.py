@@ -29,7 +29,7 @@ class Counts:
     lag : int
         Frames in a step [1].
     pairs : (n_from, 2) int64 array or None
-        For pair counts: the cell before and the cell now of each row, rising; None for static counts.
+        For counts of pairs: the previous and the present cell of each row, rising; else None.
     """
 
     moves: sparse.csr_array
@@ -63,7 +63,7 @@ def count_moves(
     Parameters
     ----------
     cells : (n_frames, n_particles) int array
-        Cell of each particle; a memory map is read in chunks.
+        Cell of each particle; memory maps are read in chunks.
     n_cells : int
         Number of cells of the grid.
     lag : int
@@ -105,7 +105,7 @@ def count_pairs(
     Returns
     -------
     Counts
-        One row per pair (i, j) that occurs, by rising i, then j; ``pairs`` lists them.
+        One row for each pair (i, j) that occurs, in the order of ``pairs``: by rising i, then j.
 
     Raises
     ------
@@ -127,8 +127,8 @@ def count_pairs(
     keys = rank[keys // n_cells] * n_cells + keys % n_cells
     order = np.argsort(keys)
     moves, shares = _csr(keys[order], values[order], pair_keys.size, n_cells)
-    listed = np.column_stack(np.divmod(pair_keys, n_cells))
-    return Counts(moves, shares, occupied[numbers[:, 0]], int(weights.sum()), lag, listed)
+    cell_pairs = np.column_stack(np.divmod(pair_keys, n_cells))
+    return Counts(moves, shares, occupied[numbers[:, 0]], int(weights.sum()), lag, cell_pairs)
 
 
 def step_starts(
@@ -160,7 +160,7 @@ def step_starts(
     n_starts = len(cells) - moves * lag
     if lag < 1 or n_starts < 1:
         raise DataError(
-            f"{len(cells)} frames hold no step of {moves} x {lag} frames: widen the window or shorten the lag"
+            f"{len(cells)} frames hold no step of {moves} x {lag} frames: widen the window or cut the lag"
         )
     end = n_starts if last is None else min(last, n_starts)
     starts = np.arange(max(first, 0), end)
@@ -181,7 +181,7 @@ def step_starts(
 def _csr(
     keys: NDArray[np.int64], values: NDArray[np.float64], n_from: int, n_cells: int
 ) -> tuple[sparse.csr_array, sparse.csr_array]:
-    """Sparse counts and shares from rising keys ``row * n_cells + column``."""
+    """Counts and shares as sparse matrices, from rising keys ``row * n_cells + column``."""
     rows, columns = np.divmod(keys, n_cells)
     indptr = np.zeros(n_from + 1, np.int64)
     np.cumsum(np.bincount(rows, minlength=n_from), out=indptr[1:])
