@@ -127,6 +127,6 @@ def test_a_gap_as_long_as_the_window_is_refused():
 @pytest.mark.parametrize("n_keys", [50, LISTED_KEYS + 1])
 def test_keys_are_ranked_alike_from_a_list_and_by_sorting(n_keys):
     keys = np.array([[7, 49, 7], [0, 12, 49]])
-    found, which = ranked(keys, n_keys)
-    assert found.tolist() == [0, 7, 12, 49]
-    assert which.tolist() == [[1, 3, 1], [0, 2, 3]]
+    distinct, ranks = ranked(keys, n_keys)
+    assert distinct.tolist() == [0, 7, 12, 49]
+    assert ranks.tolist() == [[1, 3, 1], [0, 2, 3]]
