@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Errors of curves from several starts and runs, beside the spread of the DEM itself, with intervals.
+"""Errors of curves from several starts and runs, and deviations of the DEM's curves, with intervals.
 
-Curves of different starts end at different times: arrays are padded with NaN, which nothing counts.
+Curves of different starts end at different times: arrays are padded with NaN, which no function counts.
 """
 
 from collections.abc import Callable, Sequence
@@ -14,7 +14,7 @@ from bedchain.uncertainty.bands import band
 
 Array = NDArray[np.float64]
 
-# columns of the curves (in the order of `mixing.GROUPS`) that are summed up together
+# columns of the curves (in the order of `mixing.GROUPS`) that make up each summary
 SIDES = {
     "left": (0,),
     "right": (1,),
@@ -36,19 +36,19 @@ def stacked(curves: Sequence[Array]) -> Array:
 
 
 def resampled(run: NDArray[np.integer], replicates: int, rng: np.random.Generator) -> Array:
-    """How often each curve counts in each replicate: runs drawn again, and in each of them its curves.
+    """Number of times that each curve counts in each replicate: runs are drawn, then curves of each run.
 
     Parameters
     ----------
     run : (n_curves,) int array
-        Run of each curve; with one run, its curves alone are drawn.
+        Run of each curve; with a single run only its curves are drawn.
     replicates : int
     rng : numpy Generator
 
     Returns
     -------
     (replicates, n_curves) array
-        One replicate sums to ``n_curves`` where all runs have equally many.
+        A replicate sums to ``n_curves`` if all runs have as many curves.
     """
     members = [np.flatnonzero(run == one) for one in np.unique(run)]
     weights = np.zeros((replicates, run.size))
@@ -64,7 +64,7 @@ def signed(error: Array, weights: Array | None = None) -> Array:
     Parameters
     ----------
     error : (n_curves, n_times, n_columns) array
-        Model less DEM [1].
+        Model - DEM [1].
     weights : (n_replicates, n_curves) array, optional
         From `resampled`.
     """
@@ -77,7 +77,7 @@ def rms(error: Array, weights: Array | None = None) -> Array:
 
 
 def mean_size(error: Array, weights: Array | None = None) -> Array:
-    """How large the mean over times and columns of one curve is, as a root mean square over the curves."""
+    """Root mean square over the curves of their means over times and columns; arguments as `signed`."""
     counted = _counted(error)
     means = np.divide(np.nansum(error, axis=(1, 2)), counted, out=np.zeros(len(error)), where=counted > 0)
     return np.sqrt(_weighted(means**2, (counted > 0).astype(float), weights))
@@ -86,7 +86,7 @@ def mean_size(error: Array, weights: Array | None = None) -> Array:
 def interval(
     summary: Callable[[Array, Array | None], Array], error: Array, weights: Array
 ) -> tuple[float, float]:
-    """95 % interval of a summary over starts and runs; NaN where fewer than two curves say anything.
+    """95 % interval of a summary over starts and runs; NaN with fewer than two curves of finite values.
 
     Parameters
     ----------
@@ -108,23 +108,23 @@ def interval(
 
 
 def deviations(observed: Array, group: NDArray[np.integer]) -> Array:
-    """Distance of each curve of the DEM from the mean of its group, scaled so that its square is unbiased.
+    """Deviation of each curve of the DEM from the mean of its group, scaled so that its square is unbiased.
 
-    With repeated runs a group is what started at the same time in each of them; without, all starts.
-    What is left is the noise floor: a model that knew the mean of all possible runs would err by as much.
-    A single other run taken for a model would err sqrt(2) times as much.
+    With repeated runs a group is the curves that start at the same time, without them all curves. The rms of
+    the deviations is the noise floor: the rms error of the exact mean of all possible runs. The error of
+    another single run is sqrt(2) times as large.
 
     Parameters
     ----------
     observed : (n_curves, n_times, n_columns) array
         Curves of the DEM [1].
     group : (n_curves,) int array
-        Curves that are compared with each other.
+        Group of each curve.
 
     Returns
     -------
     array of the same shape
-        NaN where fewer than two curves of the group are left.
+        NaN at times with fewer than two curves of the group.
     """
     found = np.full(observed.shape, np.nan)
     for one in np.unique(group):
@@ -139,7 +139,7 @@ def deviations(observed: Array, group: NDArray[np.integer]) -> Array:
 
 
 def distances(one: Array, two: Array) -> Array:
-    """Total variation of pairs of densities, NaN where one of them is missing.
+    """Total variation of pairs of densities, NaN where a density is missing.
 
     Parameters
     ----------
@@ -159,7 +159,7 @@ def distances(one: Array, two: Array) -> Array:
 
 
 def mean_of_others(densities: Array, group: NDArray[np.integer]) -> Array:
-    """Mean density of the other members of each curve's group, NaN where there is none.
+    """Mean density of the other members of each curve's group, NaN without any.
 
     Parameters
     ----------
@@ -182,7 +182,7 @@ def mean_of_others(densities: Array, group: NDArray[np.integer]) -> Array:
 
 
 def fluctuation(curves: Array, half_width: int) -> Array:
-    """Curves less their own running mean: what bubbles do to them, without the mean decay.
+    """Curves minus their running means: the fluctuations by bubbles, without the mean decay.
 
     Parameters
     ----------
@@ -193,7 +193,7 @@ def fluctuation(curves: Array, half_width: int) -> Array:
     Returns
     -------
     (n_curves, n_times - 2 half_width, n_columns) array
-        Its `rms` is the size of the fluctuations; without times where the curves are too short.
+        Its `rms` is the size of the fluctuations; no times if the curves are too short.
     """
     width = 2 * half_width + 1
     if curves.shape[1] < width:
