@@ -50,11 +50,11 @@ def resampled(run: NDArray[np.integer], replicates: int, rng: np.random.Generato
     (replicates, n_curves) array
         A replicate sums to ``n_curves`` if all runs have as many curves.
     """
-    members = [np.flatnonzero(run == one) for one in np.unique(run)]
+    members = [np.flatnonzero(run == number) for number in np.unique(run)]
     weights = np.zeros((replicates, run.size))
     for row in weights:
-        for one in rng.integers(0, len(members), len(members)):
-            np.add.at(row, rng.choice(members[one], members[one].size), 1.0)
+        for drawn in rng.integers(0, len(members), len(members)):
+            np.add.at(row, rng.choice(members[drawn], members[drawn].size), 1.0)
     return weights
 
 
@@ -102,8 +102,8 @@ def interval(
     """
     if (_counted(error) > 0).sum() < 2:
         return float("nan"), float("nan")
-    found = summary(error, weights)
-    low, high = band(found[np.isfinite(found)])
+    samples = summary(error, weights)
+    low, high = band(samples[np.isfinite(samples)])
     return float(low), float(high)
 
 
@@ -126,24 +126,24 @@ def deviations(observed: Array, group: NDArray[np.integer]) -> Array:
     array of the same shape
         NaN at times with fewer than two curves of the group.
     """
-    found = np.full(observed.shape, np.nan)
-    for one in np.unique(group):
-        members = group == one
+    scaled = np.full(observed.shape, np.nan)
+    for label in np.unique(group):
+        members = group == label
         curves = observed[members]
         number = np.isfinite(curves).sum(axis=0)
         mean = np.divide(
             np.nansum(curves, axis=0), number, out=np.full(number.shape, np.nan), where=number > 1
         )
-        found[members] = (curves - mean) * np.sqrt(number / np.maximum(number - 1, 1))
-    return found
+        scaled[members] = (curves - mean) * np.sqrt(number / np.maximum(number - 1, 1))
+    return scaled
 
 
-def distances(one: Array, two: Array) -> Array:
+def distances(first: Array, second: Array) -> Array:
     """Total variation of pairs of densities, NaN where a density is missing.
 
     Parameters
     ----------
-    one, two : (n_curves, n_moments, n_cells) array
+    first, second : (n_curves, n_moments, n_cells) array
         Shares [1].
 
     Returns
@@ -151,11 +151,11 @@ def distances(one: Array, two: Array) -> Array:
     (n_curves, n_moments, 1) array
         0 to 1 [1].
     """
-    found = np.full((*one.shape[:2], 1), np.nan)
-    for where in np.ndindex(*one.shape[:2]):
-        if np.isfinite(one[where]).all() and np.isfinite(two[where]).all():
-            found[where] = total_variation(one[where], two[where])
-    return found
+    distance = np.full((*first.shape[:2], 1), np.nan)
+    for place in np.ndindex(*first.shape[:2]):
+        if np.isfinite(first[place]).all() and np.isfinite(second[place]).all():
+            distance[place] = total_variation(first[place], second[place])
+    return distance
 
 
 def mean_of_others(densities: Array, group: NDArray[np.integer]) -> Array:
@@ -171,14 +171,14 @@ def mean_of_others(densities: Array, group: NDArray[np.integer]) -> Array:
     -------
     array of the same shape
     """
-    found = np.full(densities.shape, np.nan)
-    for one in range(len(densities)):
-        others = densities[(group == group[one]) & (np.arange(len(densities)) != one)]
+    means = np.full(densities.shape, np.nan)
+    for curve in range(len(densities)):
+        others = densities[(group == group[curve]) & (np.arange(len(densities)) != curve)]
         number = np.isfinite(others).sum(axis=0)
-        found[one] = np.divide(
+        means[curve] = np.divide(
             np.nansum(others, axis=0), number, out=np.full(number.shape, np.nan), where=number > 0
         )
-    return found
+    return means
 
 
 def fluctuation(curves: Array, half_width: int) -> Array:
