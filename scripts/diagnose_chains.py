@@ -62,7 +62,7 @@ def diagnose_chains(
     transitions : list of Path
         ``transitions_<model>.npz`` of each model.
     diagnostics : Path
-        Table to make; its rows are those of `bedchain.diagnosis` and `bedchain.markov_check`.
+        Table to make; its rows are those of `comparison.diagnostics` and `comparison.markov_test`.
     learning, comparison : Window
     splits : Splits
     settings : ModelSettings

@@ -19,7 +19,7 @@ class Chain(Protocol):
     name : str
         Name of the model.
     grid : Grid
-        Cells in which densities and paths are given.
+        Cells of the densities and paths.
     lag_s : float
         Time between two steps [s].
     report : dict of str to float

@@ -17,7 +17,7 @@ def classes_of(matrix: sparse.csr_array) -> tuple[NDArray[np.int64], NDArray[np.
     label : (n_states,) int64 array
         Class of each state.
     closed : (n_classes,) bool array
-        Whether a class is never left once entered.
+        True for classes that are never left.
     """
     n_classes, label = csgraph.connected_components(matrix, directed=True, connection="strong")
     rows = np.repeat(np.arange(matrix.shape[0]), np.diff(matrix.indptr))

@@ -41,7 +41,7 @@ class Counts:
 
     @property
     def visits(self) -> NDArray[np.int64]:
-        """Particles seen in each cell (or pair) at the start of a step, summed over the steps, (n_from,)."""
+        """Particles in each cell (or pair) at the start of a step, summed over the steps, (n_from,)."""
         return np.asarray(self.moves.sum(axis=1)).ravel()
 
     @property

@@ -52,11 +52,11 @@ class StepCounts:
         """
         n_cells = self.indptr.size - 1
         total = weights @ self.moves
-        seen = total > 0
-        before = np.concatenate(([0], np.cumsum(seen)))
-        index = (self.indices[seen], before[self.indptr].astype(np.int32))
-        moves = sparse.csr_array((total[seen], *index), shape=(n_cells, n_cells))
-        shares = sparse.csr_array(((weights @ self.shares)[seen], *index), shape=(n_cells, n_cells))
+        counted = total > 0
+        before = np.concatenate(([0], np.cumsum(counted)))
+        index = (self.indices[counted], before[self.indptr].astype(np.int32))
+        moves = sparse.csr_array((total[counted], *index), shape=(n_cells, n_cells))
+        shares = sparse.csr_array(((weights @ self.shares)[counted], *index), shape=(n_cells, n_cells))
         return Counts(moves, shares, weights @ self.occupied, int(weights.sum()), self.lag)
 
 

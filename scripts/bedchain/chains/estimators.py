@@ -72,9 +72,9 @@ def transition_matrix_with_openings(
     matrix = _normalised(matrix)
     unvisited = np.flatnonzero(counts.visits == 0)
     never_left = np.setdiff1d(unvisited, returned)
-    seen = (counts.visits > 0) | (np.asarray(counts.moves.sum(axis=0)).ravel() > 0)
+    counted = (counts.visits > 0) | (np.asarray(counts.moves.sum(axis=0)).ravel() > 0)
     label, closed = classes_of(matrix)
-    remaining = np.unique(label[closed[label] & seen])
+    remaining = np.unique(label[closed[label] & counted])
     return matrix, Openings(never_left, returned, remaining.size)
 
 

@@ -152,11 +152,11 @@ class MarkovChain:
     ) -> NDArray[np.float64] | NDArray[np.int64]:
         """See `chain.Chain.densities`."""
         if rng is not None:
-            wanted = {int(step) for step in steps}
+            step_numbers = {int(step) for step in steps}
             counts = {
                 step: mixing.marked_histogram(cells, marked, self.grid.n_cells)
-                for step, cells in enumerate(self.paths(start, max(wanted), rng))
-                if step in wanted
+                for step, cells in enumerate(self.paths(start, max(step_numbers), rng))
+                if step in step_numbers
             }
             return np.stack([counts[int(step)] for step in steps])
         begin = mixing.marked_histogram(self.states(start), marked, self.matrix.shape[0]).astype(float)

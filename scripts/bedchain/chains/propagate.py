@@ -85,7 +85,7 @@ def propagate(
 
     Returns
     -------
-    (n_given, n_groups, n_states) array
+    (n_steps, n_groups, n_states) array
         The groups' totals stay those of the start: each step is scaled to remove its round-off.
 
     Raises
@@ -94,21 +94,21 @@ def propagate(
         The matrix is not row-stochastic, or the steps do not rise.
     """
     check_matrix(matrix)
-    wanted = np.arange(steps + 1) if isinstance(steps, int) else np.asarray(steps, dtype=np.int64)
-    if wanted.size and (wanted[0] < 0 or (np.diff(wanted) < 0).any()):
-        raise DataError(f"steps {list(wanted)} must rise from 0 or more")
+    step_numbers = np.arange(steps + 1) if isinstance(steps, int) else np.asarray(steps, dtype=np.int64)
+    if step_numbers.size and (step_numbers[0] < 0 or (np.diff(step_numbers) < 0).any()):
+        raise DataError(f"steps {list(step_numbers)} must rise from 0 or more")
     now = np.array(np.atleast_2d(start).T, dtype=np.float64, order="C")
     later = np.empty_like(now)
     totals = now.sum(axis=0)
-    given = np.empty((wanted.size, now.shape[1], now.shape[0]))
+    distributions = np.empty((step_numbers.size, now.shape[1], now.shape[0]))
     done = 0
-    for place, step in enumerate(wanted):
+    for place, step in enumerate(step_numbers):
         now, later = _advance_many(
             matrix.indptr, matrix.indices, matrix.data, now, later, totals, int(step) - done
         )
         done = int(step)
-        given[place] = now.T
-    return given
+        distributions[place] = now.T
+    return distributions
 
 
 @njit(cache=True)

@@ -229,14 +229,14 @@ def relearner(
     places = np.stack([np.asarray(frames.x_m, np.float32), np.asarray(frames.z_m, np.float32)])
     note = {"velocities_from_differences_1": float(not measured(frames))}
 
-    def again(weights: NDArray[np.int64]) -> RecurrenceChain:
+    def from_weights(weights: NDArray[np.int64]) -> RecurrenceChain:
         chain = RecurrenceChain(
             grid, lag, lag * frames.interval_s, note.copy(), checked, places, weights, fields
         )
         chain.report |= _report(chain)
         return chain
 
-    return again
+    return from_weights
 
 
 def _report(chain: RecurrenceChain) -> dict[str, float]:

@@ -42,7 +42,7 @@ class TracerChain(ABC):
     name : str
         Name of the model.
     grid : Grid
-        Cells in which densities and paths are given.
+        Cells of the densities and paths.
     lag : int
         Frames in a step.
     lag_s : float
@@ -73,8 +73,8 @@ class TracerChain(ABC):
         generators = [rng] if rng is not None else self._expected()
         if rng is None:
             n = start.cells.shape[1]
-            wanted = EXPECTED_TRACERS // self.expected_paths
-            start = _chosen(start, self._copies(n) if n < wanted else np.arange(0, n, n // wanted))
+            tracers = EXPECTED_TRACERS // self.expected_paths
+            start = _chosen(start, self._copies(n) if n < tracers else np.arange(0, n, n // tracers))
         marked = mixing.sides(np.asarray(start.x_m[-1]), np.asarray(start.z_m[-1]), split_x_m, split_z_m)
         size = marked.sum(axis=1)
         still = np.zeros((steps + 1, 4))
@@ -95,7 +95,7 @@ class TracerChain(ABC):
         rng: np.random.Generator | None = None,
     ) -> NDArray[np.float64] | NDArray[np.int64]:
         """See `chain.Chain.densities`."""
-        wanted = np.asarray(steps, np.int64)
+        step_numbers = np.asarray(steps, np.int64)
         n = marked.shape[1]
         total = np.zeros((len(steps), len(marked), self.grid.n_cells), np.int64)
         generators = [rng] if rng is not None else self._expected()
@@ -103,8 +103,8 @@ class TracerChain(ABC):
             copies = self._copies(start.cells.shape[1])
             start, marked = _chosen(start, copies), marked[:, copies]
         for generator in generators:
-            for step, cells in enumerate(self.paths(start, int(wanted.max()), generator)):
-                if (places := wanted == step).any():
+            for step, cells in enumerate(self.paths(start, int(step_numbers.max()), generator)):
+                if (places := step_numbers == step).any():
                     total[places] += mixing.marked_histogram(cells, marked, self.grid.n_cells)
         return total if rng is not None else total / (len(generators) * marked.shape[1] / n)
 

@@ -128,7 +128,7 @@ def quantile_classes(frames: Frames, number: Sequence[int], back: int = 0) -> Ve
     stride = max(1, frames.cells.size // QUANTILE_SAMPLES)
     edges = []
     for values, n in zip(velocities(frames), number, strict=True):
-        # Every stride-th particle, from another first one in each frame: all particles are sampled.
+        # Every stride-th particle, beginning at another particle in each frame: all particles are sampled.
         sample = np.concatenate([now[frame % stride :: stride] for frame, now in enumerate(values)])
         edges.append(np.quantile(sample.astype(np.float64), np.arange(1, n) / n))
     return VelocityClasses(edges[0], edges[1], back)

@@ -82,12 +82,12 @@ def relearner(
     n_states, lag_s = grid.n_cells * edges.number, lag * frames.interval_s
     note = {"velocities_from_differences_1": float(not measured(frames))}
 
-    def again(weights: NDArray[np.int64]) -> MarkovChain:
+    def from_weights(weights: NDArray[np.int64]) -> MarkovChain:
         counts = count_moves(states, n_states, lag, step_weights=weights[back:])
         chain = from_counts(counts, edges, grid, lag_s, estimator, fewest_samples)
         return replace(chain, report=chain.report | note)
 
-    return again
+    return from_weights
 
 
 def from_counts(
