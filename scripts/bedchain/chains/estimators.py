@@ -150,12 +150,16 @@ def _rows_divided(matrix: sparse.csr_array, divisor: NDArray[np.int64]) -> spars
     return sparse.csr_array((data, matrix.indices, matrix.indptr), shape=matrix.shape)
 
 
+def with_sorted_rows(matrix: sparse.csr_array) -> sparse.csr_array:
+    """The same matrix with int32 indices, rising in each row."""
+    index = (matrix.indices.astype(np.int32), matrix.indptr.astype(np.int32))
+    matrix = sparse.csr_array((matrix.data, *index), shape=matrix.shape)
+    matrix.sort_indices()
+    return matrix
+
+
 def _normalised(matrix: sparse.csr_array) -> sparse.csr_array:
     """Matrix whose rows sum to 1 as closely as floating point allows."""
     sums = np.repeat(np.asarray(matrix.sum(axis=1)).ravel(), np.diff(matrix.indptr))
-    matrix = sparse.csr_array(
-        (matrix.data / sums, matrix.indices.astype(np.int32), matrix.indptr.astype(np.int32)),
-        shape=matrix.shape,
-    )
-    matrix.sort_indices()
-    return matrix
+    shares = sparse.csr_array((matrix.data / sums, matrix.indices, matrix.indptr), shape=matrix.shape)
+    return with_sorted_rows(shares)

@@ -18,7 +18,7 @@ from scipy import sparse
 
 from bedchain.chains.classes import open_classes
 from bedchain.chains.counting import Counts, count_moves, step_starts
-from bedchain.chains.estimators import leak, transition_matrix
+from bedchain.chains.estimators import leak, transition_matrix, with_sorted_rows
 from bedchain.chains.markov_chain import MarkovChain
 from bedchain.chains.velocity_binning import VelocityClasses, measured, quantile_classes
 from bedchain.errors import DataError
@@ -144,14 +144,8 @@ def from_counts(
         # Each move once: moves from thin states in the rows of their cells.
         moves = sparse.csr_array(onto.T @ counts.moves @ onto)
         matrix, returned = open_classes(matrix, replace(counts, moves=moves))
-    index = (matrix.indices.astype(np.int32), matrix.indptr.astype(np.int32))
-    matrix = sparse.csr_array((matrix.data, *index), shape=matrix.shape)
-    matrix.sort_indices()
-    visited = float((visits > 0).sum())
-    report = {
-        "states_1": visited,
-        "thin_state_share_1": 1 - kept.size / visited,
-        "fallback_share_1": 1 - float(visits[kept].sum() / visits.sum()),
+    matrix = with_sorted_rows(matrix)
+    report = _report(visits, kept) | {
         "leak_1": leak(counts) if estimator == "literal" else 0.0,
         "states_returned_1": float(returned.size),
         "moves_1": float(visits.sum()),
@@ -161,6 +155,16 @@ def from_counts(
     return MarkovChain(
         "velocity_class", grid, counts.lag, lag_s, matrix, cells, 1, kept, kept.size, report, classes
     )
+
+
+def _report(visits: NDArray[np.int64], kept: NDArray[np.int64]) -> dict[str, float]:
+    """Numbers of visited and of thin states, and the share of the moves that begin in thin states."""
+    visited = float((visits > 0).sum())
+    return {
+        "states_1": visited,
+        "thin_state_share_1": 1 - kept.size / visited,
+        "fallback_share_1": 1 - float(visits[kept].sum() / visits.sum()),
+    }
 
 
 def _states(

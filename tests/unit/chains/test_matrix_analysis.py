@@ -47,19 +47,19 @@ def long_run_density(matrix: sparse.csr_array) -> np.ndarray:
 
 def test_second_eigenvalue_of_the_reflecting_walk():
     for matrix in (reflecting_walk(20), with_states_apart(reflecting_walk(20))):
-        found = matrix_analysis.leading_eigenvalues(matrix, 3)
-        assert found[0] == pytest.approx(1)
-        assert found[1].real == pytest.approx(0.99384417, abs=5e-9)
+        eigenvalues = matrix_analysis.leading_eigenvalues(matrix, 3)
+        assert eigenvalues[0] == pytest.approx(1)
+        assert eigenvalues[1].real == pytest.approx(0.99384417, abs=5e-9)
         assert matrix_analysis.implied_timescales(matrix, 0.025, 1)[0] == pytest.approx(
-            -0.025 / np.log(found[1].real)
+            -0.025 / np.log(eigenvalues[1].real)
         )
         assert matrix_analysis.mixing_time(matrix, 0.025) == pytest.approx(0.025 / (1 - 0.99384417), rel=1e-5)
 
 
 def test_second_eigenvalue_of_the_ring_is_complex():
-    found = matrix_analysis.leading_eigenvalues(ring(8, 0.75), 3)
-    assert abs(found[1]) == pytest.approx(0.9434855817366555, abs=1e-12)
-    assert abs(found[1].imag) > 0.1 and abs(found[2]) == pytest.approx(abs(found[1]))
+    eigenvalues = matrix_analysis.leading_eigenvalues(ring(8, 0.75), 3)
+    assert abs(eigenvalues[1]) == pytest.approx(0.9434855817366555, abs=1e-12)
+    assert abs(eigenvalues[1].imag) > 0.1 and abs(eigenvalues[2]) == pytest.approx(abs(eigenvalues[1]))
     assert matrix_analysis.mixing_time(ring(8, 1.0), 1.0) == np.inf
 
 
@@ -108,8 +108,8 @@ def test_long_run_density_weighs_closed_classes_by_what_they_catch():
     matrix[0, [0, 1, 2]] = 0.5, 0.2, 0.3
     matrix[1, 1] = matrix[2, 3] = matrix[3, 2] = matrix[4, 4] = 1
     start = np.array([2.0, 0, 0, 1, 1])
-    found = matrix_analysis.long_run_density(sparse.csr_array(matrix), start)
-    assert found == pytest.approx([0, 0.2, 0.275, 0.275, 0.25])
+    density = matrix_analysis.long_run_density(sparse.csr_array(matrix), start)
+    assert density == pytest.approx([0, 0.2, 0.275, 0.275, 0.25])
 
 
 def test_total_variation_by_hand():

@@ -40,8 +40,8 @@ def test_the_nearest_particle_is_that_of_a_tree(count):
         for dtype in (np.float64, np.float32):
             held = particles.astype(dtype)
             away = KDTree(held.T.astype(float)).query(tracers.T)[0]
-            found = nearest(tracers, held, size)
-            assert np.hypot(*(held[:, found] - tracers)) == pytest.approx(away, abs=1e-9)
+            closest = nearest(tracers, held, size)
+            assert np.hypot(*(held[:, closest] - tracers)) == pytest.approx(away, abs=1e-9)
 
 
 def test_distances_agree_with_a_plain_loop():

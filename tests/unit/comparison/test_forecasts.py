@@ -48,7 +48,7 @@ def of_model(name: str, frames: Frames, lag: int, gaps: list[int], weights: np.n
 def test_counted_shares_agree_with_a_plain_loop():
     frames, gaps = walk_frames(40, 9), [1, 3, 4]
     weights = np.array([2, 0, 1, 1, 3, 0, 0, 2, 1])
-    found = counted(count_sides(frames, *SPLITS, gaps), weights)
+    shares = counted(count_sides(frames, *SPLITS, gaps), weights)
     for row, gap in enumerate(gaps):
         began, stayed = np.zeros(4), np.zeros(4)
         for first in range(10 - gap):
@@ -59,7 +59,7 @@ def test_counted_shares_agree_with_a_plain_loop():
                 )
                 began += now.sum(axis=1)
                 stayed += (now & later).sum(axis=1)
-        assert found[row] == pytest.approx(stayed / began, abs=ROUND_OFF)
+        assert shares[row] == pytest.approx(stayed / began, abs=ROUND_OFF)
 
 
 @pytest.mark.parametrize("lag", [1, 2])
