@@ -5,7 +5,7 @@ import numpy as np
 import pytest
 from deeptime.markov import TransitionCountEstimator
 
-from bedchain.chains.counting import Counts, count_moves, count_pairs, merge, read_counts, write_counts
+from bedchain.chains.counting import Counts, count_moves, count_pairs
 from bedchain.errors import DataError
 from bedchain.files import map_array
 from bedchain.trajectory import chunks
@@ -24,12 +24,12 @@ def random_cells(seed: int, n_frames: int = 30, n_particles: int = 200, n_cells:
     return cells
 
 
-def naive(cells: np.ndarray, lag: int, moves: int, every: int = 1) -> tuple[Counter, dict, Counter]:
+def naive(cells: np.ndarray, lag: int, moves: int) -> tuple[Counter, dict, Counter]:
     """Counts, sums of shares and occupied steps by plain loops; keys are tuples of cells."""
     counts: Counter = Counter()
     shares: dict = defaultdict(float)
     occupied: Counter = Counter()
-    for start in range(0, len(cells) - moves * lag, every):
+    for start in range(len(cells) - moves * lag):
         now = [tuple(int(cells[start + k * lag, p]) for k in range(moves + 1)) for p in range(cells.shape[1])]
         held = Counter(path[:-1] for path in now)
         for path in now:
@@ -39,17 +39,22 @@ def naive(cells: np.ndarray, lag: int, moves: int, every: int = 1) -> tuple[Coun
     return counts, shares, occupied
 
 
-def assert_equals_naive(found: Counts, expected: tuple[Counter, dict, Counter]) -> None:
-    counts, shares, occupied = expected
-    pairs = found.pairs.tolist() if found.pairs is not None else [[cell] for cell in range(found.n_cells)]
-    moves, share = found.moves.tocoo(), found.shares.tocoo()
-    paths = [(*pairs[row], int(column)) for row, column in zip(moves.row, moves.col, strict=True)]
-    assert dict(zip(paths, moves.data.tolist(), strict=True)) == dict(counts)
-    for path, value in zip(paths, share.data, strict=True):
-        assert value == pytest.approx(shares[path], abs=ROUND_OFF)
-    assert {tuple(pair): n for pair, n in zip(pairs, found.occupied.tolist(), strict=True) if n} == dict(
-        occupied
+def by_path(counts: Counts) -> tuple[Counter, Counter, Counter]:
+    """Counts, sums of shares and occupied steps, by tuples of cells."""
+    froms = counts.pairs.tolist() if counts.pairs is not None else [[cell] for cell in range(counts.n_cells)]
+    moves, shares = counts.moves.tocoo(), counts.shares.tocoo()
+    paths = [(*froms[row], int(column)) for row, column in zip(moves.row, moves.col, strict=True)]
+    occupied = zip(map(tuple, froms), counts.occupied.tolist(), strict=True)
+    return (
+        Counter(dict(zip(paths, moves.data.tolist(), strict=True))),
+        Counter(dict(zip(paths, shares.data.tolist(), strict=True))),
+        Counter({path: steps for path, steps in occupied if steps}),
     )
+
+
+def assert_same(measured: tuple[Counter, Counter, Counter], expected: tuple[Counter, dict, Counter]) -> None:
+    assert measured[0] == expected[0] and measured[2] == expected[2]
+    assert measured[1] == pytest.approx(expected[1], abs=ROUND_OFF)
 
 
 def test_one_particle_at_lag_two():
@@ -58,19 +63,19 @@ def test_one_particle_at_lag_two():
 
 
 def test_two_particles_by_hand():
-    found = count_moves(np.array([[0, 0], [0, 1], [1, 1]], np.int32), 3)
-    assert found.moves.toarray().tolist() == [[1, 2, 0], [0, 1, 0], [0, 0, 0]]
-    assert found.shares.toarray().tolist() == [[0.5, 1.5, 0], [0, 1, 0], [0, 0, 0]]
-    assert found.occupied.tolist() == [2, 1, 0]
-    assert found.visits.tolist() == [3, 1, 0]
-    assert found.steps == 2
+    counts = count_moves(np.array([[0, 0], [0, 1], [1, 1]], np.int32), 3)
+    assert counts.moves.toarray().tolist() == [[1, 2, 0], [0, 1, 0], [0, 0, 0]]
+    assert counts.shares.toarray().tolist() == [[0.5, 1.5, 0], [0, 1, 0], [0, 0, 0]]
+    assert counts.occupied.tolist() == [2, 1, 0]
+    assert counts.visits.tolist() == [3, 1, 0]
+    assert counts.steps == 2
 
 
 def test_pairs_by_hand():
-    found = count_pairs(np.array([[0, 2], [1, 2], [0, 2], [1, 0]], np.int32), 3)
-    assert found.pairs.tolist() == [[0, 1], [1, 0], [2, 2]]
-    assert found.moves.toarray().tolist() == [[1, 0, 0], [0, 1, 0], [1, 0, 1]]
-    assert found.steps == 2
+    counts = count_pairs(np.array([[0, 2], [1, 2], [0, 2], [1, 0]], np.int32), 3)
+    assert counts.pairs.tolist() == [[0, 1], [1, 0], [2, 2]]
+    assert counts.moves.toarray().tolist() == [[1, 0, 0], [0, 1, 0], [1, 0, 1]]
+    assert counts.steps == 2
 
 
 @pytest.mark.parametrize("lag", [1, 2, 5])
@@ -79,9 +84,7 @@ def test_agrees_with_plain_loops(lag, moves):
     count = count_moves if moves == 1 else count_pairs
     for seed in range(3):
         cells = random_cells(seed)
-        assert_equals_naive(count(cells, 12, lag), naive(cells, lag, moves))
-    cells = random_cells(9, 31)
-    assert_equals_naive(count(cells, 12, lag, sliding=False), naive(cells, lag, moves, every=lag))
+        assert_same(by_path(count(cells, 12, lag)), naive(cells, lag, moves))
 
 
 def test_agrees_with_deeptime():
@@ -93,31 +96,29 @@ def test_agrees_with_deeptime():
         assert (model.count_matrix == count_moves(cells, 12, lag).moves.toarray()).all()
 
 
-@pytest.mark.parametrize("count", [count_moves, count_pairs])
-def test_merged_counts_of_seven_windows_equal_those_of_one(count):
-    cells = random_cells(5, n_frames=60)
-    whole = count(cells, 12, 2)
+@pytest.mark.parametrize(("count", "moves"), [(count_moves, 1), (count_pairs, 2)])
+def test_counts_of_seven_parts_of_a_window_add_up_to_those_of_the_whole(count, moves):
+    cells, lag = random_cells(5, n_frames=60), 2
+    starts = np.arange(60 - moves * lag)
     edges = [0, 5, 6, 20, 31, 40, 52, 60]
-    merged = merge(
-        [count(cells, 12, 2, first=low, last=high) for low, high in zip(edges, edges[1:], strict=False)]
-    )
-    assert (merged.moves != whole.moves).nnz == 0
-    assert abs(merged.shares - whole.shares).max() < ROUND_OFF
-    assert (merged.occupied == whole.occupied).all() and merged.steps == whole.steps
-    if whole.pairs is not None:
-        assert (merged.pairs == whole.pairs).all()
+    parts = [
+        count(cells, 12, lag, step_weights=((low <= starts) & (starts < high)).astype(int))
+        for low, high in zip(edges, edges[1:], strict=False)
+    ]
+    whole = count(cells, 12, lag)
+    sums = tuple(sum(column, Counter()) for column in zip(*map(by_path, parts), strict=True))
+    assert_same(sums, by_path(whole))
+    assert sum(part.steps for part in parts) == whole.steps
 
 
-@pytest.mark.parametrize("count", [count_moves, count_pairs])
-def test_counts_of_parallel_jobs_come_back_from_files(count, tmp_path):
+def test_first_and_last_choose_the_steps_of_a_part():
     cells = random_cells(11)
-    for job, (low, high) in enumerate([(0, 9), (9, 30)]):
-        write_counts(tmp_path / f"{job}.npz", count(cells, 12, first=low, last=high))
-    merged = merge([read_counts(tmp_path / f"{job}.npz") for job in (0, 1)])
-    assert_equals_naive(merged, naive(cells, 1, 1 if count is count_moves else 2))
-    np.savez(tmp_path / "other.npz", moves=np.ones(3))
-    with pytest.raises(DataError, match="holds no counts, 'indices' is missing"):
-        read_counts(tmp_path / "other.npz")
+    weights = np.zeros(28, int)
+    weights[9:20] = 1
+    part = count_moves(cells, 12, 2, first=9, last=20)
+    assert_same(by_path(part), by_path(count_moves(cells, 12, 2, step_weights=weights)))
+    assert part.steps == 11
+    assert_same(by_path(count_moves(cells, 12, 2, first=9, last=99)), naive(cells[9:], 2, 1))
 
 
 def test_chunks_change_nothing(monkeypatch, tmp_path):
@@ -126,7 +127,6 @@ def test_chunks_change_nothing(monkeypatch, tmp_path):
     whole = [
         count_moves(cells, 12, 3),
         count_pairs(cells, 12, 3),
-        count_moves(cells[:28], 12, 3, sliding=False),
     ]
     monkeypatch.setattr(chunks, "CHUNK_BYTES", 4 * cells[0].nbytes)
     mapped = map_array(tmp_path / "cells.npz", "cells")
@@ -135,7 +135,6 @@ def test_chunks_change_nothing(monkeypatch, tmp_path):
         parts = [
             count_moves(array, 12, 3),
             count_pairs(array, 12, 3),
-            count_moves(array[:28], 12, 3, sliding=False),
         ]
         for one, two in zip(whole, parts, strict=True):
             assert (one.moves != two.moves).nnz == 0 and (one.occupied == two.occupied).all()
@@ -152,18 +151,18 @@ def test_views_of_memory_maps_read_the_right_frames(tmp_path):
 def test_weights_count_steps_again():
     cells = random_cells(8)
     weights = np.random.default_rng(1).integers(0, 3, 29)
-    found = count_moves(cells, 12, step_weights=weights)
+    counts = count_moves(cells, 12, step_weights=weights)
     steps = [count_moves(cells, 12, first=t, last=t + 1) for t in range(29) for _ in range(weights[t])]
-    again = merge(steps)
-    assert (found.moves != again.moves).nnz == 0 and found.steps == again.steps
-    assert abs(found.shares - again.shares).max() < ROUND_OFF and (found.occupied == again.occupied).all()
+    sums = tuple(sum(column, Counter()) for column in zip(*map(by_path, steps), strict=True))
+    assert_same(by_path(counts), sums)
+    assert counts.steps == len(steps)
 
 
 def test_a_cell_a_diameter_keeps_only_what_occurs():
     n_cells = 270 * 1050
     cells = np.random.default_rng(3).integers(0, n_cells, (4, 20_000), dtype=np.int32)
-    found = count_moves(cells, n_cells)
-    assert found.moves.sum() == 60_000 and found.moves.nnz <= 60_000
+    counts = count_moves(cells, n_cells)
+    assert counts.moves.sum() == 60_000 and counts.moves.nnz <= 60_000
     double = count_pairs(cells, n_cells)
     assert double.moves.sum() == 40_000 and len(double.pairs) <= 40_000
 
@@ -174,22 +173,16 @@ def test_bad_input_is_refused():
         count_moves(cells, 12, 30)
     with pytest.raises(DataError, match="hold no step"):
         count_pairs(cells, 12, 15)
-    with pytest.raises(DataError, match="does not divide"):
-        count_moves(cells, 12, 4, sliding=False)
     with pytest.raises(DataError, match="window is empty"):
         count_moves(cells, 12, first=40, last=50)
     with pytest.raises(DataError, match="28 step weights for 29 steps"):
         count_moves(cells, 12, step_weights=np.ones(28, int))
     with pytest.raises(DataError, match="none negative"):
         count_moves(cells, 12, step_weights=np.arange(29) - 1)
-    with pytest.raises(DataError, match="weighs nothing"):
+    with pytest.raises(DataError, match="weights are 0"):
         count_moves(cells, 12, step_weights=np.zeros(29, int))
     with pytest.raises(DataError, match="frames, particles"):
         count_moves(cells[0], 12)
     cells[7, 31] = 12
     with pytest.raises(DataError, match=r"particle 31 .*frame 7 is in cell 12, the grid has cells 0 to 11"):
         count_moves(cells, 12)
-    with pytest.raises(DataError, match="do not add up"):
-        merge([count_moves(cells, 13), count_moves(cells, 14)])
-    with pytest.raises(DataError, match="no counts"):
-        merge([])

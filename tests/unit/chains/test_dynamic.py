@@ -4,7 +4,7 @@ import pytest
 
 from bedchain.chains import dynamic, registry
 from bedchain.chains.chain import Chain
-from bedchain.chains.counting import Counts, count_moves, count_pairs, merge
+from bedchain.chains.counting import count_moves
 from bedchain.chains.estimators import ESTIMATORS
 from bedchain.errors import DataError
 from bedchain.trajectory.frames import Frames
@@ -54,8 +54,8 @@ def test_the_dynamic_chain_recovers_the_persistent_walk_from_frames():
     start = framed(np.array([[99, 101], [100, 100]]), grid)
     expected = {"dynamic": (PERSISTENT_MSD, 0.03), "static": (50.0, 0.03)}
     for name, (displacement, tolerance) in expected.items():
-        found = mean_square(registry.learn(name, frames, grid), start, 100, 50)
-        assert found == pytest.approx(displacement, rel=tolerance), name
+        mean_square_displacement = mean_square(registry.learn(name, frames, grid), start, 100, 50)
+        assert mean_square_displacement == pytest.approx(displacement, rel=tolerance), name
 
 
 @pytest.mark.parametrize("estimator", list(ESTIMATORS))
@@ -117,21 +117,22 @@ def test_dynamic_matrix_agrees_with_a_loop_over_pairs():
     for p in range(path.shape[1]):
         same = (path[:-2] == path[10, p]) & (path[1:-1] == path[11, p])
         expected += np.bincount(path[2:][same], minlength=grid.n_cells) / same.sum()
-    found = chain.densities(start, np.ones((1, path.shape[1]), bool), [1])[0, 0]
-    assert np.allclose(found, expected, atol=1e-9)
+    densities = chain.densities(start, np.ones((1, path.shape[1]), bool), [1])[0, 0]
+    assert np.allclose(densities, expected, atol=1e-9)
 
 
-def test_merged_parts_make_the_same_dynamic_chain():
+def test_every_step_counted_twice_makes_the_same_dynamic_chain():
     frames, grid = stirred(9)
-    cells = frames.cells
-
-    def parts(count) -> Counts:
-        return merge([count(cells, grid.n_cells, first=low, last=low + 10) for low in range(0, 60, 10)][:6])
-
+    n_steps = len(frames.times_s) - 1
     whole = registry.learn("dynamic", frames, grid)
-    joined = dynamic.from_counts(parts(count_pairs), parts(count_moves), grid, 0.025)
+    twice = registry.learn("dynamic", frames, grid, step_weights=np.full(n_steps, 2))
+    parts = [
+        registry.learn("dynamic", frames, grid, step_weights=part.astype(int))
+        for part in (np.arange(n_steps) < 30, np.arange(n_steps) >= 30)
+    ]
     for key, array in whole.arrays().items():
-        assert (array == joined.arrays()[key]).all(), key
+        assert key == "report" or (array == twice.arrays()[key]).all(), key
+    assert (np.union1d(*(part.state_keys for part in parts)) == whole.state_keys).all()
 
 
 def test_a_pair_entered_only_at_the_end_moves_on_as_its_cell_does():

@@ -4,7 +4,7 @@ import pytest
 from scipy import sparse
 
 from bedchain.chains.classes import closed_classes
-from bedchain.chains.counting import count_moves, merge
+from bedchain.chains.counting import Counts, count_moves
 from bedchain.chains.estimators import (
     ESTIMATORS,
     leak,
@@ -26,9 +26,10 @@ def paths(*particles: list[int]) -> np.ndarray:
 
 def uneven_cell():
     """Cell 0 sends on 0.9 of what it holds when that is little (10), 0.1 when it is much (200)."""
-    little = paths(*[[0, 1]] * 9, [0, 0])
-    much = paths(*[[0, 1]] * 20, *[[0, 0]] * 180)
-    return merge([count_moves(little, 2), count_moves(much, 2)])
+    little = count_moves(paths(*[[0, 1]] * 9, [0, 0]), 2)
+    much = count_moves(paths(*[[0, 1]] * 20, *[[0, 0]] * 180), 2)
+    moves, shares = little.moves + much.moves, little.shares + much.shares
+    return Counts(moves, shares, little.occupied + much.occupied, 2, 1)
 
 
 def test_per_step_and_pooled_differ_where_occupancy_and_motion_are_linked():

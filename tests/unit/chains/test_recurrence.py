@@ -4,7 +4,7 @@ import pytest
 from scipy.spatial import KDTree
 
 from bedchain.chains import registry
-from bedchain.chains.frame_distance import compare
+from bedchain.chains.frame_distance import frame_fields
 from bedchain.chains.nearest_particle import nearest
 from bedchain.errors import DataError
 from bedchain.measures.mixing import remaining_from_positions, sides
@@ -40,14 +40,14 @@ def test_the_nearest_particle_is_that_of_a_tree(count):
         for dtype in (np.float64, np.float32):
             held = particles.astype(dtype)
             away = KDTree(held.T.astype(float)).query(tracers.T)[0]
-            found = nearest(tracers, held, size)
-            assert np.hypot(*(held[:, found] - tracers)) == pytest.approx(away, abs=1e-9)
+            closest = nearest(tracers, held, size)
+            assert np.hypot(*(held[:, closest] - tracers)) == pytest.approx(away, abs=1e-9)
 
 
 def test_distances_agree_with_a_plain_loop():
     frames = kept_velocity(300, 5, 0.1, 0.1, 0.1, seed=7)
-    likeness = compare(frames, Grid(0.1, 0.1, 10, 10), 0.045)
-    assert (likeness.coarse.columns, likeness.coarse.rows) == (2, 2)
+    learned = frame_fields(frames, Grid(0.1, 0.1, 10, 10), 0.045)
+    assert (learned.coarse.columns, learned.coarse.rows) == (2, 2)
     fields = np.zeros((5, 3, 4))
     for frame in range(5):
         for p in range(300):
@@ -55,9 +55,9 @@ def test_distances_agree_with_a_plain_loop():
             fields[frame, :, cell] += 1, frames.vx_m_s[frame, p], frames.vz_m_s[frame, p]
     scale = np.sqrt(((fields - fields.mean(axis=0)) ** 2).mean(axis=0).sum(axis=1))
     expected = [[np.sqrt((((a - b) / scale[:, None]) ** 2).sum()) for a in fields] for b in fields]
-    assert likeness.distances() == pytest.approx(np.array(expected), rel=1e-5, abs=1e-6)
-    assert (likeness.distances() ** 2).mean() == pytest.approx(6, rel=1e-5)
-    assert likeness.to(likeness.of(frames.part(slice(0, 4)))).argmin() == 3
+    assert learned.distances() == pytest.approx(np.array(expected), rel=1e-5, abs=1e-6)
+    assert (learned.distances() ** 2).mean() == pytest.approx(6, rel=1e-5)
+    assert learned.distances_from(learned.last_of(frames.part(slice(0, 4)))).argmin() == 3
 
 
 def test_jumps_lead_to_the_most_alike_frames_far_enough_away():
@@ -65,7 +65,7 @@ def test_jumps_lead_to_the_most_alike_frames_far_enough_away():
     options = {"segment_s": 0.1, "separation_s": 0.25, "neighbours": 3}
     chain = registry.learn("recurrence", frames, grid, **options)
     path = chain.path(frames.part(slice(20, 22)), 2000, np.random.default_rng(3))
-    between, jumps = chain.likeness.distances(), 0
+    between, jumps = chain.fields.distances(), 0
     assert path[0] == 21 and min(path) >= 0 and max(path) <= 58
     for now, after in zip(path, path[1:], strict=False):
         if after == now + 1:
@@ -103,7 +103,7 @@ def test_a_bed_that_recurs_is_followed_beyond_its_window():
     assert np.abs(chain.mixing(start, 0.1, 0.04, steps) - known).max() < 0.01
     path = places(chain, start, steps)
     assert np.abs(path[:, 0] - frames.x_m[96:]).max() < 1e-4
-    # without likeness the phase is lost
+    # without similar frames the phase is lost
     other = registry.learn("recurrence", frames.part(slice(0, 51)), grid, order="shuffled")
     assert np.abs(other.mixing(start, 0.1, 0.04, steps) - known).max() > 0.2
 
@@ -160,7 +160,7 @@ def test_steps_of_no_weight_are_never_played(order):
     [
         ({"order": "backwards"}, "order 'backwards' is unknown: choose one of recurrence, shuffled, replay"),
         ({"neighbours": 0}, "must be positive"),
-        ({"separation_s": 1.0}, "no frame 1 s or more away"),
+        ({"separation_s": 1.0}, "no other 1 s or more away"),
     ],
 )
 def test_impossible_settings_are_refused(options, said):

@@ -182,10 +182,10 @@ def test_velocities_that_are_missing_are_differences():
     blank = np.full(frames.x_m.shape, np.nan)
     for vx in (None, blank):
         bare = Frames(frames.times_s, frames.x_m, frames.z_m, frames.cells, vx, vx)
-        found = velocity_binning.velocities(bare)
+        velocities = velocity_binning.velocities(bare)
         assert not velocity_binning.measured(bare)
-        assert found[0][3] == pytest.approx((frames.x_m[3] - frames.x_m[2]) / 0.025)
-        assert (found[1][0] == found[1][1]).all()
+        assert velocities[0][3] == pytest.approx((frames.x_m[3] - frames.x_m[2]) / 0.025)
+        assert (velocities[1][0] == velocities[1][1]).all()
     assert velocity_binning.measured(frames)
 
 

@@ -56,10 +56,10 @@ def test_interval_covers_the_truth_where_a_curve_moves_as_a_whole():
 def test_a_chain_that_is_the_mean_has_the_floor_as_its_error():
     rng = np.random.default_rng(5)
     curves = 0.5 + rng.normal(0, 0.05, (400, 30, 4))
-    found = values(noise_metrics("static", np.full((30, 4), 0.5), curves))
+    metrics = values(noise_metrics("static", np.full((30, 4), 0.5), curves))
     for group in ("left", "right", "low", "up"):
-        assert found[f"error_over_noise_{group}"] == pytest.approx(1, abs=0.4)
-        assert found[f"error_rms_of_mean_{group}"] < 0.01
+        assert metrics[f"error_over_noise_{group}"] == pytest.approx(1, abs=0.4)
+        assert metrics[f"error_rms_of_mean_{group}"] < 0.01
     off = values(noise_metrics("static", np.full((30, 4), 0.6), curves))
     assert off["error_signed_of_mean_left"] == pytest.approx(0.1, abs=0.005)
     assert off["error_over_noise_left"] > 2
@@ -83,7 +83,7 @@ def test_seeds_of_repeats_are_different_primes():
     for seed in (10007, 15485863, 32452843, LARGEST_SEED):
         seeds = [kick_seed(seed, number) for number in range(1, 20)]
         assert len(set(seeds)) == len(seeds)
-        assert all(is_prime(found) and 10000 < found <= LARGEST_SEED for found in seeds)
+        assert all(is_prime(seed) and 10000 < seed <= LARGEST_SEED for seed in seeds)
 
 
 def test_a_repeat_finds_its_segment_or_says_where_it_can_start():
