@@ -6,6 +6,7 @@ from dataclasses import dataclass
 
 from scipy.optimize import brentq
 
+from bedchain.physics import fluidization
 from bedchain.physics.constants import ADIABATIC_INDEX, GRAVITY_M_S2, PRESSURE_PA
 from bedchain.physics.contacts import contact_modulus
 
@@ -79,15 +80,17 @@ def reynolds(scene: Scene, velocity: float) -> float:
 
 
 def ergun_velocity(scene: Scene) -> float:
-    """Superficial velocity at which the gas carries the bed [m/s], by Ergun's equation (1952).
+    """Superficial velocity at which the gas carries the settled bed [m/s], by Ergun 1952."""
+    return fluidization.ergun_velocity(
+        scene.voidage, scene.diameter, scene.density, scene.gas_density, scene.viscosity
+    )
 
-    The positive root of ``1.75 / e^3 Re^2 + 150 (1 - e) / e^3 Re = Ar`` (Kunii, Levenspiel 1991, ch. 3).
-    """
-    cube = scene.voidage**3
-    inertial, viscous = 1.75 / cube, 150 * (1 - scene.voidage) / cube
-    # the root in the form that loses no digits where the viscous term rules
-    root = 2 * archimedes(scene) / (viscous + math.sqrt(viscous**2 + 4 * inertial * archimedes(scene)))
-    return root * scene.viscosity / (scene.gas_density * scene.diameter)
+
+def ergun_gradient(scene: Scene, velocity: float) -> float:
+    """Pressure gradient of the settled bed at a superficial velocity [m/s], by Ergun 1952 [Pa/m]."""
+    return fluidization.ergun_gradient(
+        scene.voidage, scene.diameter, scene.gas_density, scene.viscosity, velocity
+    )
 
 
 def wen_yu_velocity(scene: Scene) -> float:
@@ -98,8 +101,8 @@ def wen_yu_velocity(scene: Scene) -> float:
 
 def pressure_share(scene: Scene) -> float:
     """Ergun's pressure drop of the settled bed at the scene's velocity, over its weight [1]; 1 fluidizes."""
-    solid, re = 1 - scene.voidage, reynolds(scene, scene.velocity)
-    return (1.75 * re**2 + 150 * solid * re) / scene.voidage**3 / archimedes(scene)
+    weight = (1 - scene.voidage) / scene.volume * scene.weight
+    return ergun_gradient(scene, scene.velocity) / weight
 
 
 def single_drag(scene: Scene, velocity: float) -> float:
@@ -128,10 +131,7 @@ def gas_relaxation_time(scene: Scene) -> float:
     At least at the velocity of minimum fluidization, which the gas between particles of a bubbling bed has.
     """
     speed = max(scene.velocity, ergun_velocity(scene))
-    solid, e = 1 - scene.voidage, scene.voidage
-    viscous = 150 * solid**2 / e**3 * scene.viscosity * speed / scene.diameter**2
-    inertial = 1.75 * solid / e**3 * scene.gas_density * speed**2 / scene.diameter
-    return scene.gas_density * speed / (viscous + inertial)
+    return scene.gas_density * speed / ergun_gradient(scene, speed)
 
 
 def grain_velocity(scene: Scene) -> float:
