@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Checks of the particles: the seed, the bed they fit into, their contacts, and the steps of their time."""
+"""Checks of the particles: seed, size of the bed, contacts, DEM step, and the times that it divides."""
 
 from collections.abc import Iterator
 
@@ -18,7 +18,7 @@ BED_KEYS = ("bed.width_m", "bed.height_m", "bed.thickness_m", "bed.layers")
 
 @reads("seed")
 def seed_is_prime(seed: int) -> Iterator[Finding]:
-    """Refuse a seed that LIGGGHTS would not take."""
+    """Refuse a seed that LIGGGHTS does not accept."""
     if seed > 2**31 - 1:
         yield (
             "seed",
@@ -34,9 +34,9 @@ def seed_is_prime(seed: int) -> Iterator[Finding]:
 def particles_fit(
     width: float, height: float, thickness: float, layers: str, diameter: float, number: int
 ) -> Iterator[Finding]:
-    """Refuse a bed narrower than a particle, or too low for all of them."""
+    """Refuse a bed narrower than a particle, or too low for all particles."""
     many = layers == "many"
-    # Between walls the particles start from a lattice in three dimensions
+    # between a front and a back wall the lattice at the start has several layers
     across = START_SPACING_DIAMETERS * diameter if many else diameter
     thinnest = across if many else LAYER_DISTANCE * diameter
     sizes = (("width_m", width, across), ("height_m", height, diameter), ("thickness_m", thickness, thinnest))
@@ -49,7 +49,7 @@ def particles_fit(
     if narrow:
         return
     settled = settled_height(number, diameter, width, thickness if many else None)
-    # What does not fit into the lattice that they start from would not be there at all
+    # LIGGGHTS drops particles that do not fit into the lattice at the start
     fits = width >= START_SPACING_DIAMETERS * diameter
     started = start_height(number, diameter, width, thickness if many else None) if fits else 0
     needed = max(settled / FILLED_HEIGHT_MAX, started)
@@ -70,7 +70,7 @@ def particles_fit(
 def step_is_stable(
     step: float, allowed: bool, young: float, poisson: float, density: float, diameter: float
 ) -> Iterator[Finding]:
-    """Refuse a step of the particles above the usual share of the Rayleigh time."""
+    """Refuse a DEM step above the usual share of the Rayleigh time."""
     limit = RAYLEIGH_SHARE_MAX * rayleigh_time(young, poisson, density, diameter / 2)
     if step > limit and not allowed:
         softer = young * (limit / step) ** 2
@@ -93,7 +93,7 @@ def step_is_stable(
 def particles_carry_the_bed(
     young: float, poisson: float, density: float, diameter: float, number: int, width: float, depth: float
 ) -> Iterator[Finding]:
-    """Refuse particles so soft that the bed's own weight presses the lowest ones far into each other."""
+    """Refuse particles so soft that the lowest ones overlap too far under the weight of the bed."""
     overlap = static_overlap(young, poisson, density, diameter, number, width, depth)
     if overlap > OVERLAP_AT_REST_MAX:
         stiffer = young * (overlap / OVERLAP_AT_REST_MAX) ** 1.5
@@ -106,7 +106,7 @@ def particles_carry_the_bed(
 
 @reads("time.dem_step_s", "time.settle_s", "time.frame_interval_s", "time.segment_s", "time.end_s")
 def steps_nest(dem: float, settle: float, frame: float, segment: float, end: float) -> Iterator[Finding]:
-    """Refuse times that are no whole number of the steps they are made of."""
+    """Refuse times that are no whole number of the steps that they consist of."""
     pairs = [
         ("settle_s", settle, "dem_step_s", dem),
         ("frame_interval_s", frame, "dem_step_s", dem),

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Checks of the chains: windows, lag, cells, repeats, and the lines and moments of the figures."""
+"""Checks of the chains: windows, lag, cells, repeats, dividing lines, and moments of the figures."""
 
 from collections.abc import Iterator
 
@@ -35,14 +35,14 @@ def windows_lie_in_time(
     if compare_start < learn_end:
         wrong = (
             f"{compare_start:g} s is inside the learning window, {learn_start:g} to {learn_end:g} s: "
-            "the chain would be tested on what it learned"
+            "the chain would be tested on the frames that it was learned from"
         )
         yield "comparison.start_s", wrong, f"take at least {learn_end:g}, or an earlier learning.end_s"
 
 
 @reads("discussion.cell_sizes_m", "particles.diameter_m")
 def cells_of_the_discussion_hold_particles(sizes: list[float], diameter: float) -> Iterator[Finding]:
-    """Refuse cells smaller than a particle."""
+    """Refuse cell sizes of the discussion below a particle diameter."""
     for size in sizes:
         if size < diameter:
             wrong = f"{size:g} m is smaller than a particle ({diameter:g} m)"
@@ -53,12 +53,12 @@ def cells_of_the_discussion_hold_particles(sizes: list[float], diameter: float) 
 def repeats_start_at_a_segment(
     repeats: int, start: float, segment: float, gas_model: str
 ) -> Iterator[Finding]:
-    """Refuse repeats without gas, or from within a segment: the state is kept at its end only."""
+    """Refuse repeats without gas, or that start inside a segment: its state is kept at the end only."""
     if repeats and gas_model == "none":
         yield (
             "comparison.repeats",
             f"{repeats} repeats of a scene without gas",
-            "take 0: only beds are repeated",
+            "take 0: only beds with gas are repeated",
         )
     if repeats and not is_multiple(start, segment):
         wrong = f"{repeats} repeats cannot start at comparison.start_s ({start:g} s), within a segment"
@@ -76,13 +76,13 @@ def repeats_start_at_a_segment(
 def lag_fits(
     lag: float, frame: float, learn_start: float, learn_end: float, compare_start: float, compare_end: float
 ) -> Iterator[Finding]:
-    """Refuse a lag between frames, or too long for the windows."""
+    """Refuse a lag that is no multiple of the frame interval, or too long for the windows."""
     if not is_multiple(lag, frame):
         wrong = f"{lag:g} s is no multiple of time.frame_interval_s ({frame:g} s)"
         yield "chain.lag_s", wrong, f"take {nearest_multiple(lag, frame):.10g}"
     shorter = min(learn_end - learn_start, compare_end - compare_start)
     if 0 < shorter < 2 * lag:
-        wrong = f"{lag:g} s: the shorter window ({shorter:g} s) holds less than two of it"
+        wrong = f"{lag:g} s: the shorter window ({shorter:g} s) holds less than two lags"
         yield "chain.lag_s", wrong, "take a shorter lag or longer windows; the dynamic chain needs two lags"
 
 
@@ -101,7 +101,7 @@ def cells_hold_particles(
 def splits_lie_in_bed(
     split_x: float, split_z: float, batch: float, width: float, height: float
 ) -> Iterator[Finding]:
-    """Refuse dividing lines outside the bed."""
+    """Refuse dividing lines and a batch outside the bed."""
     lines = [
         ("mixing.split_x_m", split_x, "width_m", width),
         ("mixing.split_z_m", split_z, "height_m", height),
@@ -117,7 +117,7 @@ def splits_lie_in_bed(
 
 @reads("figures.moments_s", "time.frame_interval_s", "comparison.start_s", "comparison.end_s")
 def moments_are_frames(moments: list[float], frame: float, start: float, end: float) -> Iterator[Finding]:
-    """Refuse moments between frames, or after the comparison."""
+    """Refuse moments that are no frames, or after the comparison."""
     for moment in moments:
         if not is_multiple(moment, frame):
             wrong = f"{moment:g} s is no multiple of time.frame_interval_s ({frame:g} s)"

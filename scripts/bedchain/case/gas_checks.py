@@ -19,7 +19,7 @@ LAYERS_MIN = 10  # of particles: a lower bed is nearly all top and bottom
 
 @reads("gas.superficial_velocity_m_s", "time.gas_step_s", "gas.cell_size_m")
 def gas_step_is_stable(velocity: float, step: float, cell: float) -> Iterator[Finding]:
-    """Refuse a step of the gas in which it crosses more than a cell."""
+    """Refuse a gas step in which the gas crosses more than a cell."""
     courant = courant_number(velocity, step, cell)
     if courant > COURANT_MAX:
         wrong = f"{step:g} s gives a gas Courant number of about {courant:.3g}, above {COURANT_MAX:g}"
@@ -46,7 +46,7 @@ def gas_cells_fit(cell: float, width: float, height: float, diameter: float) -> 
 
 @reads("run.ranks", "gas.cell_size_m", "bed.width_m")
 def ranks_share_gas_evenly(ranks: int, cell: float, width: float) -> Iterator[Finding]:
-    """Refuse ranks that cannot have slabs of equally many gas cells."""
+    """Refuse ranks that do not divide the gas cells along the width evenly."""
     cells = ratio(width, cell)
     if cells.denominator == 1 and cells % ranks:
         wrong = f"{ranks} ranks cannot share {cells} gas cells along the width evenly"
@@ -55,7 +55,7 @@ def ranks_share_gas_evenly(ranks: int, cell: float, width: float) -> Iterator[Fi
 
 @reads("time.dem_step_s", "time.gas_step_s", "time.frame_interval_s", "time.ramp_s", "time.end_s")
 def gas_steps_nest(dem: float, gas: float, frame: float, ramp: float, end: float) -> Iterator[Finding]:
-    """Refuse steps of the gas that do not fit the particles' or the frames, and a ramp that never ends."""
+    """Refuse a gas step that does not fit the DEM step or the frames, and a ramp that does not end."""
     pairs = [("gas_step_s", gas, "dem_step_s", dem), ("frame_interval_s", frame, "gas_step_s", gas)]
     for name, length, unit_name, unit in pairs:
         if not is_multiple(length, unit):
@@ -68,24 +68,24 @@ def gas_steps_nest(dem: float, gas: float, frame: float, ramp: float, end: float
 
 @reads("particles.density_kg_m3", "gas.density_kg_m3", "gas.superficial_velocity_m_s")
 def gas_is_light(density: float, gas_density: float, velocity: float) -> Iterator[Finding]:
-    """Refuse a gas so dense that particles take a share of it along; no equation has that added mass."""
+    """Refuse a gas so dense that the added mass of the particles counts; no equation has it."""
     share = gas_density / (2 * density)
     if share > ADDED_MASS_MAX:
         wrong = (
             f"{gas_density:g} kg/m3 among particles of {density:g} kg/m3: the added mass, rho_g / (2 rho_p), "
-            f"is {share:.3g} of their own, above {ADDED_MASS_MAX:g}, and is not modelled"
+            f"is {share:.3g} of their mass, above {ADDED_MASS_MAX:g}, and is not modelled"
         )
         yield "gas.density_kg_m3", wrong, f"take at most {rounded_down(2 * density * ADDED_MASS_MAX)}"
 
 
 @reads("time.gas_step_s", "gas.cell_size_m")
-def gas_step_sees_particles_fall(step: float, cell: float) -> Iterator[Finding]:
-    """Refuse a step of the gas in which free particles fall through a good part of a gas cell."""
+def gas_step_resolves_the_fall(step: float, cell: float) -> Iterator[Finding]:
+    """Refuse a gas step in which free particles fall through a large part of a gas cell."""
     limit = FREE_FALL_SHARE_MAX * math.sqrt(2 * cell / GRAVITY_M_S2)
     if step > limit:
         wrong = (
             f"{step:g} s is above {limit:.4g} s, {FREE_FALL_SHARE_MAX:.0%} of the time sqrt(2 cell / g) in "
-            "which a particle falls through a gas cell, and its forces are as old"
+            "which a particle falls through a gas cell with a drag force that old"
         )
         yield "time.gas_step_s", wrong, f"take at most {rounded_down(limit)}, or a larger gas.cell_size_m"
 
@@ -94,10 +94,10 @@ def gas_step_sees_particles_fall(step: float, cell: float) -> Iterator[Finding]:
     "gas.cell_size_m", "particles.number", "particles.diameter_m", "bed.width_m", "bed.thickness_m",
     "bed.layers",
 )  # fmt: skip
-def gas_cells_see_the_bed(
+def gas_cells_resolve_the_bed(
     cell: float, number: int, diameter: float, width: float, thickness: float, layers: str
 ) -> Iterator[Finding]:
-    """Refuse gas cells about as high as the bed: its voidage would be mixed with that of the space above."""
+    """Refuse gas cells about as high as the bed: they would mix its voidage with that of the freeboard."""
     height = settled_height(number, diameter, width, thickness if layers == "many" else None)
     if height >= LAYERS_MIN * diameter and cell > GAS_CELL_MAX * height:
         wrong = (

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""The scene of a case: the numbers that decide what physics it needs."""
+"""The scene of a case: the numbers that decide which physics it needs."""
 
 from bedchain.case.schema import Case
 from bedchain.errors import UserError
@@ -8,17 +8,17 @@ from bedchain.physics.scene_numbers import Scene
 
 
 def scene_of(case: Case) -> Scene:
-    """What the audit needs of a checked case.
+    """Scene of a checked case.
 
     Parameters
     ----------
     case : dict
-        Sections bed, particles, contact and gas, and drum where it has one.
+        Sections bed, particles, contact, gas, and optionally drum.
 
     Raises
     ------
     UserError
-        Where the particles are no heavier than the gas: nothing settles then, and no number has a meaning.
+        The particles are not denser than the gas: nothing would settle.
     """
     bed, particles, gas, contact = case["bed"], case["particles"], case["gas"], case["contact"]
     if particles["density_kg_m3"] <= gas["density_kg_m3"]:

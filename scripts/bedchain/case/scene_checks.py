@@ -15,12 +15,12 @@ UNUSED_WITHOUT_GAS = {"time": ("gas_step_s", "ramp_s"), "contact": ("largest_ove
 
 
 def used_keys(case: dict[str, Any]) -> dict[str, Any]:
-    """The case without the keys that its scene does not use: without gas, those of gas and its steps.
+    """The case less the keys that its scene does not use: in a scene without gas those of the gas.
 
     Parameters
     ----------
     case : dict
-        The case with its defaults; sections that the schema refused may be of any kind.
+        The case with its defaults; sections that the schema refused may have any type.
     """
     gas = case.get("gas")
     if not isinstance(gas, dict) or gas.get("model") != "none":
@@ -33,14 +33,14 @@ def used_keys(case: dict[str, Any]) -> dict[str, Any]:
 
 
 def checked_keys(case: dict[str, Any]) -> dict[str, Any]:
-    """`used_keys`, and ``scene``: ``box, coupled`` or ``drum, none``, or two that cannot be."""
+    """`used_keys`, and ``scene``: shape and gas model, such as ``box, coupled`` or ``drum, none``."""
     gas = case.get("gas")
     model = gas.get("model") if isinstance(gas, dict) else None
     return used_keys(case) | {"scene": f"{'drum' if 'drum' in case else 'box'}, {model}"}
 
 
 def drum_sites(diameter: float, particle: float) -> int:
-    """Sites of the loose lattice inside a drum that its particles fall from [1], as ``drum/in.fill``.
+    """Sites of the lattice inside a drum that its particles fall from in ``drum/in.fill`` [1].
 
     Parameters
     ----------
@@ -53,27 +53,27 @@ def drum_sites(diameter: float, particle: float) -> int:
 
 
 @reads("scene")
-def gas_flows_in_a_box_and_a_drum_turns_without(scene: str) -> Iterator[Finding]:
+def a_box_has_gas_and_a_drum_has_none(scene: str) -> Iterator[Finding]:
     """Refuse a box without gas, where nothing would move the particles, and gas in a drum."""
     if scene == "box, none":
         remedy = "add drum: {revolution_s: ...}, or take coupled"
         yield "gas.model", "none leaves the particles at rest: nothing moves them but a drum", remedy
     if scene == "drum, coupled":
-        yield "gas.model", "coupled does not go with a drum: the gas's cells end at flat walls", "take none"
+        yield "gas.model", "coupled does not go with a drum: the gas cells end at flat walls", "take none"
 
 
 @reads("drum.revolution_s", "bed.width_m", "bed.height_m", "bed.layers")
 def drum_is_round_and_flat(revolution: float, width: float, height: float, layers: str) -> Iterator[Finding]:
-    """Refuse a drum that its box does not hold exactly, or one that is more than one layer deep."""
+    """Refuse a drum whose box is not a square, or with more than one layer of particles."""
     if width != height:
         yield "bed.height_m", f"{height:g} m is not the drum's diameter", f"take bed.width_m ({width:g} m)"
     if layers != "one":
-        yield "bed.layers", "many is not there for a drum", "take one"
+        yield "bed.layers", "many is not possible in a drum", "take one"
 
 
 @reads("drum.revolution_s", "time.frame_interval_s")
 def a_revolution_has_frames(revolution: float, frame: float) -> Iterator[Finding]:
-    """Refuse a revolution between frames: no matrix could be that of a revolution."""
+    """Refuse a revolution that is no whole number of frames: no matrix could span it."""
     if not is_multiple(revolution, frame):
         wrong = f"{revolution:g} s is no multiple of time.frame_interval_s ({frame:g} s)"
         yield "drum.revolution_s", wrong, f"take {nearest_multiple(revolution, frame):.10g}"
@@ -83,7 +83,7 @@ def a_revolution_has_frames(revolution: float, frame: float) -> Iterator[Finding
 def particles_fit_into_the_drum(
     revolution: float, width: float, diameter: float, number: int
 ) -> Iterator[Finding]:
-    """Refuse more particles than the lattice that they fall from has sites."""
+    """Refuse more particles than the lattice at the start has sites."""
     if diameter <= width and number > (sites := drum_sites(width, diameter)):
         wrong = f"{number} start on a lattice that has {sites} sites in a drum of {width:g} m"
         yield (
@@ -95,8 +95,8 @@ def particles_fit_into_the_drum(
 
 @reads("drum.revolution_s", "run.dump_format", "comparison.repeats")
 def drum_is_dumped_in_binary_and_once(revolution: float, form: str, repeats: int) -> Iterator[Finding]:
-    """Refuse text frames, with LIGGGHTS's own names y and z, and repeats, which need a state of the gas."""
+    """Refuse frames as text, whose columns have other names, and repeats, which need the gas."""
     if form != "binary":
-        yield "run.dump_format", f"{form} is not there for a drum", "take binary"
+        yield "run.dump_format", f"{form} is not possible for a drum", "take binary"
     if repeats:
-        yield "comparison.repeats", f"{repeats} repeats are not there for a drum", "take 0"
+        yield "comparison.repeats", f"{repeats} repeats are not possible for a drum", "take 0"

@@ -1,11 +1,11 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Gas through a packed bed: minimum fluidization and the Courant number."""
+"""Gas through a packed bed: Ergun's pressure drop, minimum fluidization, Courant number."""
 
 import math
 
 from bedchain.physics.constants import GRAVITY_M_S2
 
-DENSE_VOIDAGE = 0.4  # of a packed bed; makes the estimate of the gas velocity between particles a high one
+DENSE_VOIDAGE = 0.4  # of a packed bed: an upper estimate of the gas velocity between the particles
 
 
 def courant_number(velocity: float, step: float, cell: float) -> float:

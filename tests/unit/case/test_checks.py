@@ -12,9 +12,9 @@ from made import ROOT
 
 NAMES = {
     "a_revolution_has_frames", "cells_hold_particles", "cells_of_the_discussion_hold_particles",
-    "drum_is_dumped_in_binary_and_once", "drum_is_round_and_flat", "gas_cells_fit", "gas_cells_see_the_bed",
-    "gas_flows_in_a_box_and_a_drum_turns_without", "gas_is_light", "gas_step_is_stable",
-    "gas_step_sees_particles_fall", "gas_steps_nest", "lag_fits", "moments_are_frames",
+    "drum_is_dumped_in_binary_and_once", "drum_is_round_and_flat", "gas_cells_fit", "gas_cells_resolve_the_bed",
+    "a_box_has_gas_and_a_drum_has_none", "gas_is_light", "gas_step_is_stable",
+    "gas_step_resolves_the_fall", "gas_steps_nest", "lag_fits", "moments_are_frames",
     "particles_carry_the_bed", "particles_fit", "particles_fit_into_the_drum", "ranks_share_gas_evenly",
     "repeats_start_at_a_segment", "seed_is_prime", "splits_lie_in_bed", "step_is_stable", "steps_nest",
     "windows_lie_in_time",
