@@ -225,10 +225,11 @@ def open_trajectory(path: Path, metadata_path: Path) -> tuple[np.ndarray, dict[s
     return store, metadata
 
 
-def _check_disk(target: Path, needed: int) -> None:
-    free = shutil.disk_usage(target.parent).free
-    if free < needed + DISK_RESERVE_BYTES:
+def _check_disk(target: Path, size: int) -> None:
+    needed, free = size + DISK_RESERVE_BYTES, shutil.disk_usage(target.parent).free
+    if free < needed:
+        needed_size, free_size = (tqdm.format_sizeof(number, "B") for number in (needed, free))
         raise UserError(
-            f"{target.parent}: {free / 1e6:.0f} MB free, {needed / 1e6:.0f} MB needed for {target.name}; "
+            f"{target.parent}: {free_size} free, {needed_size} needed for {target.name}; "
             "free disk space and run again"
         )
