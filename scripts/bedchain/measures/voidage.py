@@ -37,12 +37,12 @@ def profiles(
     edges_m : (n_rows + 1,) array
         Edges of the rows [m].
     width_m, thickness_m, diameter_m : float
-        Of the bed, of its slab, of a particle [m].
+        Width of the bed, thickness of its slab, particle diameter [m].
 
     Returns
     -------
     (n_frames, n_rows) ndarray
-        [1]
+        Voidage [1].
     """
     held = np.array([np.histogram(z, edges_m)[0] for z in z_m])
     volume = np.pi / 6 * diameter_m**3
