@@ -105,12 +105,12 @@ class Grid:
             limit = max(top, float(np.asarray(top, dtype=values.dtype)))  # the wall itself, as stored
             if values.min() >= 0 and values.max() <= limit:
                 continue
-            where = tuple(int(i) for i in np.argwhere(~((values >= 0) & (values <= limit)))[0])
-            value = float(values[where])
+            index = tuple(int(i) for i in np.argwhere(~((values >= 0) & (values <= limit)))[0])
+            value = float(values[index])
             excess = -value if value < 0 else value - top
-            frame = first_frame + (where[0] if len(where) > 1 else 0)
+            frame = first_frame + (index[0] if len(index) > 1 else 0)
             raise DataError(
-                f"particle {where[-1]} (counted from 0) in frame {frame} is at {name} = {value:g} m, "
+                f"particle {index[-1]} (counted from 0) in frame {frame} is at {name} = {value:g} m, "
                 f"{excess:g} m outside the bed (0 to {top:g} m): check the bed's size in the case file, "
                 "or whether particles leave the bed"
             )
