@@ -49,7 +49,7 @@ def particles_fit(
     if narrow:
         return
     settled = settled_height(number, diameter, width, thickness if many else None)
-    # LIGGGHTS drops particles that do not fit into the lattice at the start
+    # particles beyond the sites of the lattice at the start would not exist
     fits = width >= START_SPACING_DIAMETERS * diameter
     started = start_height(number, diameter, width, thickness if many else None) if fits else 0
     needed = max(settled / FILLED_HEIGHT_MAX, started)

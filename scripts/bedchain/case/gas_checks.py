@@ -85,7 +85,7 @@ def gas_step_resolves_the_fall(step: float, cell: float) -> Iterator[Finding]:
     if step > limit:
         wrong = (
             f"{step:g} s is above {limit:.4g} s, {FREE_FALL_SHARE_MAX:.0%} of the time sqrt(2 cell / g) in "
-            "which a particle falls through a gas cell with a drag force that old"
+            "which a particle falls through a gas cell; its drag is updated once a gas step"
         )
         yield "time.gas_step_s", wrong, f"take at most {rounded_down(limit)}, or a larger gas.cell_size_m"
 

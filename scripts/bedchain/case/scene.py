@@ -31,10 +31,21 @@ def scene_of(case: Case) -> Scene:
     depth = settled_height(particles["number"], diameter, width, thickness if layered else None)
     voidage = 1 - (PACKED_VOLUME_SHARE if layered else PACKED_AREA_SHARE * 2 / 3 * diameter / thickness)
     return Scene(
-        diameter, particles["density_kg_m3"], gas["density_kg_m3"], gas["viscosity_Pa_s"],
-        gas["superficial_velocity_m_s"] if solved else 0.0,
-        width, thickness, depth, bed["height_m"] if "drum" in case else depth, voidage,
-        contact["young_modulus_Pa"], contact["poisson_ratio_1"], contact["friction_1"],
-        contact["rolling_friction_1"],
-        gas["cell_size_m"], solved, layered,
-    )  # fmt: skip
+        diameter=diameter,
+        density=particles["density_kg_m3"],
+        gas_density=gas["density_kg_m3"],
+        viscosity=gas["viscosity_Pa_s"],
+        velocity=gas["superficial_velocity_m_s"] if solved else 0.0,
+        width=width,
+        thickness=thickness,
+        depth=depth,
+        fall=bed["height_m"] if "drum" in case else depth,
+        voidage=voidage,
+        young=contact["young_modulus_Pa"],
+        poisson=contact["poisson_ratio_1"],
+        friction=contact["friction_1"],
+        rolling=contact["rolling_friction_1"],
+        cell=gas["cell_size_m"],
+        gas=solved,
+        layered=layered,
+    )

@@ -18,6 +18,8 @@ def ergun_gradient(
 ) -> float:
     """Pressure gradient of a packed bed by Ergun 1952, Chem. Eng. Prog. 48, 89 [Pa/m].
 
+    ``150 (1 - e)^2 / e^3 mu U / d^2 + 1.75 (1 - e) / e^3 rho_g U^2 / d``.
+
     Parameters
     ----------
     voidage : float
