@@ -28,7 +28,7 @@ def write_arrays(path: Path | str, arrays: dict[str, NDArray[Any]]) -> None:
     arrays : dict of str to array
         Of any type except objects.
     """
-    with complete(Path(path)) as temporary, temporary.open("wb") as stream:
+    with atomic_file(Path(path)) as temporary, temporary.open("wb") as stream:
         np.savez(stream, allow_pickle=False, **arrays)
 
 
@@ -78,7 +78,7 @@ CSV_DIGITS = "%.8g"
 
 
 @contextmanager
-def complete(target: Path) -> Iterator[Path]:
+def atomic_file(target: Path) -> Iterator[Path]:
     """A temporary file beside ``target``: moved to ``target`` after success, removed after an error.
 
     Parameters
@@ -109,7 +109,7 @@ def sync(file: Path) -> None:
 
 def write_text(target: Path, text: str) -> None:
     """Write a text in UTF-8, complete or not at all."""
-    with complete(target) as temporary:
+    with atomic_file(target) as temporary:
         temporary.write_text(text, encoding="utf-8")
 
 
@@ -136,12 +136,12 @@ def write_csv(table: pd.DataFrame, target: Path) -> None:
         Its column names end in the units.
     target : Path
     """
-    with complete(target) as temporary:
+    with atomic_file(target) as temporary:
         table.to_csv(temporary, index=False, float_format=CSV_DIGITS)
 
 
 @contextmanager
-def exclusive(folder: Path) -> Iterator[None]:
+def locked_folder(folder: Path) -> Iterator[None]:
     """Lock a folder for one process; the lock ends with the process, however that ends.
 
     Raises
@@ -166,7 +166,7 @@ def exclusive(folder: Path) -> Iterator[None]:
 
 
 @contextmanager
-def whole_folder(target: Path) -> Iterator[Path]:
+def atomic_folder(target: Path) -> Iterator[Path]:
     """A work folder that becomes ``target`` if the work succeeds; the remains of a failed try are removed."""
     part = target.with_name(target.name + ".part")
     shutil.rmtree(part, ignore_errors=True)

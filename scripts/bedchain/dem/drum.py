@@ -18,7 +18,7 @@ from bedchain.dem.segments import (
     write_record,
 )
 from bedchain.errors import UserError
-from bedchain.files import whole_folder
+from bedchain.files import atomic_folder
 from bedchain.trajectory.dumps import read_dump
 
 FILL, TUMBLE, WALLS = "drum/in.fill", "drum/in.tumble", "drum/walls.in"
@@ -26,7 +26,7 @@ SERIES = "bed_series.csv"
 SERIES_COLUMNS = ["time_s", "mean_height_m", "surface_angle_rad", "kinetic_energy_J", "particles_1"]
 
 
-def turns(case: Path) -> bool:
+def is_drum(case: Path) -> bool:
     """Whether ``results/<case>`` is a drum, by its ``parameters.lig``."""
     return "drum_speed" in read_parameters(case / "parameters.lig")
 
@@ -70,7 +70,7 @@ def run_segment(
         "decks": decks, "parameters": run.case / "parameters.lig", "restart": previous / RESTART,
         "start_step": steps[0], "steps": steps[1] - steps[0],
     }  # fmt: skip
-    with whole_folder(run.state / name) as part:
+    with atomic_folder(run.state / name) as part:
         try:
             run_deck(decks / TUMBLE, variables | {"output": part}, part / "liggghts.log", run.ranks)
         except UserError as error:

@@ -63,7 +63,7 @@ def copy_last_state(source: Path, target: Path) -> None:
             shutil.copytree(part / "constant", target / part.name / "constant")
 
 
-def cut_for_ranks(gas: Path, source: Path, ranks: int) -> None:
+def redistribute(gas: Path, source: Path, ranks: int) -> None:
     """Reconstruct or decompose the last fields of a case, so that another number of ranks can continue it.
 
     Parameters

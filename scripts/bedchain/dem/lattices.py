@@ -14,16 +14,16 @@ def lattice(width: float, height: float, spacing: float, diameter: float) -> np.
     """
     columns, rows = round(width / spacing), round(height / spacing)
     z, x = np.meshgrid((np.arange(rows) + 0.5) * spacing, (np.arange(columns) + 0.5) * spacing, indexing="ij")
-    return at_rest(x.ravel(), z.ravel(), diameter)
+    return spheres_at_rest(x.ravel(), z.ravel(), diameter)
 
 
-def at_rest(x: np.ndarray, z: np.ndarray, diameter: float) -> np.ndarray:
+def spheres_at_rest(x: np.ndarray, z: np.ndarray, diameter: float) -> np.ndarray:
     """Spheres at rest at given positions [m], as rows of x, z, vx, vz, diameter."""
     still = np.zeros_like(x)
     return np.column_stack([x, z, still, still, np.full_like(x, diameter)])
 
 
-def loose(width: float, number: int, diameter: float, rng: np.random.Generator) -> np.ndarray:
+def loose_lattice(width: float, number: int, diameter: float, rng: np.random.Generator) -> np.ndarray:
     """Lattice without contacts and with random velocities; it settles into a random packing."""
     columns = int(width / (1.15 * diameter))
     spacing = width / columns

@@ -118,11 +118,11 @@ def run_logged(
             raise
     if code != 0:
         raise UserError(
-            f"{Path(command[0]).name} ended with code {code}:\n{last_words(log)}\nits whole log: {log}"
+            f"{Path(command[0]).name} ended with code {code}:\n{error_lines(log)}\nits whole log: {log}"
         )
 
 
-def last_words(log: Path) -> str:
+def error_lines(log: Path) -> str:
     """Lines of a log from its first error on, or its last lines without one."""
     lines = [line for line in log.read_text(encoding="utf-8", errors="replace").splitlines() if line.strip()]
     first = next(

@@ -4,11 +4,11 @@
 from pathlib import Path
 from typing import Any
 
-from bedchain.dem.gas_case import copy_last_state, cut_for_ranks
+from bedchain.dem.gas_case import copy_last_state, redistribute
 from bedchain.dem.processes import run_deck
 from bedchain.dem.segments import RESTART, SegmentedRun
 from bedchain.errors import UserError
-from bedchain.files import whole_folder
+from bedchain.files import atomic_folder
 from bedchain.physics.whole_numbers import is_prime
 
 DECK = "in.perturb"
@@ -93,9 +93,9 @@ def perturb(run: SegmentedRun, segment: Path, decks: Path, seed: int, speed_m_s:
     """
     if (run.state / run.origin).exists():
         return
-    with whole_folder(run.state / run.origin) as part:
+    with atomic_folder(run.state / run.origin) as part:
         copy_last_state(segment / "gas", part / "gas")
-        cut_for_ranks(part / "gas", segment / "gas", run.ranks)
+        redistribute(part / "gas", segment / "gas", run.ranks)
         variables = {
             "decks": decks,
             "parameters": run.case / "parameters.lig",

@@ -8,7 +8,7 @@ from typing import NamedTuple
 import numpy as np
 
 from bedchain.errors import DataError, UserError
-from bedchain.files import complete, map_array, write_npy_header
+from bedchain.files import atomic_file, map_array, write_npy_header
 from bedchain.trajectory.chunks import read_frames
 from bedchain.trajectory.grid import Grid
 
@@ -49,7 +49,7 @@ def write_cells(trajectory: np.ndarray, times_s: np.ndarray, grid: Grid, target:
     n_frames, _, n_particles = trajectory.shape
     chunk = max(1, CHUNK_VALUES // n_particles)
     small = {"columns": grid.columns, "rows": grid.rows, "width_m": grid.width_m, "height_m": grid.height_m}
-    with complete(target) as temporary, zipfile.ZipFile(temporary, "w") as archive:
+    with atomic_file(target) as temporary, zipfile.ZipFile(temporary, "w") as archive:
         # the file of numpy.savez, without the whole array in memory
         with archive.open("cells.npy", "w", force_zip64=True) as stream:
             write_npy_header(stream, (n_frames, n_particles), np.dtype(np.int32))

@@ -14,7 +14,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from bedchain.errors import UserError
-from bedchain.files import complete
+from bedchain.files import atomic_file
 
 # no context between bytes: neighbours in the file are unrelated particles
 FILTERS = [{"id": lzma.FILTER_LZMA2, "preset": 6, "lc": 0, "lp": 0, "pb": 0}]
@@ -66,7 +66,7 @@ def write_levels(frames: Iterable[Levels], target: Path) -> None:
     """
     before: Levels | np.uint16 = np.uint16(0)
     last: Levels | np.uint16 = np.uint16(0)
-    with complete(target) as temporary, lzma.open(temporary, "wb", filters=FILTERS) as stream:
+    with atomic_file(target) as temporary, lzma.open(temporary, "wb", filters=FILTERS) as stream:
         for at, levels in enumerate(frames):
             # uint16 wraps around, as in read_levels
             change = (levels - last - (last - before if at > 1 else np.uint16(0))).view(np.int16)

@@ -13,7 +13,7 @@ import numpy as np
 from tqdm import tqdm
 
 from bedchain.errors import UserError
-from bedchain.files import complete, write_npy_header, write_text
+from bedchain.files import atomic_file, write_npy_header, write_text
 from bedchain.trajectory.dumps import frame_of, listed, read_dump
 
 LOG = logging.getLogger(__name__)
@@ -125,7 +125,7 @@ def write_trajectory(
             raise UserError(f"the dumps hold {' '.join(columns)}, x and z are needed; write them again")
         LOG.info("no %s in the dumps: models that need velocities take differences of positions", absent)
     # a plain stream: the pages of a memory map would stay in memory until the end
-    with complete(trajectory) as temporary, temporary.open("wb") as stream:
+    with atomic_file(trajectory) as temporary, temporary.open("wb") as stream:
         write_npy_header(stream, shape, np.dtype(np.float32))
         for index in tqdm(range(len(frames)), desc="parse_dumps", unit="frame", disable=not progress):
             frame = _read_frame(manifest, index, dem.parent, ids, bounds)
