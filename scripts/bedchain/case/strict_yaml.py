@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""YAML files read strictly: numbers as YAML 1.2 has them, no key twice, the line of every key known."""
+"""Strict reading of YAML: numbers as in YAML 1.2, unique keys, and the line of every key."""
 
 import math
 import re
@@ -22,7 +22,7 @@ StrictLoader.add_implicit_resolver("tag:yaml.org,2002:float", FLOAT, list("-+.01
 
 
 def read_yaml(file: Path) -> tuple[Any, Lines]:
-    """Read a YAML file and the line of each of its keys.
+    """Contents of a YAML file, and the line of each key.
 
     Parameters
     ----------
@@ -39,9 +39,9 @@ def read_yaml(file: Path) -> tuple[Any, Lines]:
     Raises
     ------
     UserError
-        Where the file is missing.
+        The file is missing or not text.
     CaseError
-        Where it is no YAML, or holds a key twice, an alias of a group, or a number that is not finite.
+        The file is not YAML, or has a key twice, an alias of a group, or a number that is not finite.
     """
     try:
         text = file.read_text(encoding="utf-8")
@@ -64,7 +64,7 @@ def read_yaml(file: Path) -> tuple[Any, Lines]:
 
 
 class _Reader:
-    """Turns YAML nodes into values, and notes lines and problems on the way."""
+    """Values of YAML nodes, with the lines of their keys and the problems met."""
 
     def __init__(self, loader: StrictLoader) -> None:
         self.loader = loader

@@ -14,8 +14,9 @@ import pandas as pd
 import pytest
 import yaml
 
+from bedchain.case.bed_checks import OVERLAP_AT_REST_MAX
+from bedchain.case.gas_checks import FREE_FALL_SHARE_MAX, GAS_CELL_MAX
 from bedchain.case.load import load_case
-from bedchain.case.scene_checks import FREE_FALL_SHARE_MAX, GAS_CELL_MAX, OVERLAP_AT_REST_MAX
 from bedchain.dem import processes
 from bedchain.errors import CaseError, Problem, UserError
 from bedchain.physics.contacts import contact_modulus, static_overlap

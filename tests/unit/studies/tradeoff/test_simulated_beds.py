@@ -7,7 +7,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from bedchain.case.checks import RAYLEIGH_SHARE_MAX
+from bedchain.case.bed_checks import RAYLEIGH_SHARE_MAX
 from bedchain.case.load import load_case
 from bedchain.case.variants import Variant, write_variant
 from bedchain.errors import UserError
