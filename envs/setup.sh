@@ -9,7 +9,7 @@ cd "$(dirname "$0")/.."
 PYTHON=/usr/bin/python3
 VENV_MB=2100 # Python packages, downloaded and unpacked [MB]
 TEMP_MB=500  # of that in the temporary folder
-CHECKS_MB=700 # the checks' packages [MB]
+CHECKS_MB=500 # the checks' packages [MB]
 
 # lock_entry NAME: the lock's lines on that package (version and hashes).
 lock_entry() { awk -v name="$1==" 'index($0, name) == 1, !/\\$/' envs/requirements.txt; }
