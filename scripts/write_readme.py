@@ -3,9 +3,9 @@
 
 usage: python scripts/write_readme.py [--case short] [--study verify]
 
-Tables stand between marks and come from committed csv files, which this writes into the texts. Before that, the
-csv files of a case are made from its results, and that of a study from what it has just left on this machine, at
-the commit that is checked out.
+Tables stand between marks and come from committed csv files, which this writes into the texts. Before that,
+the csv files of a case are made from its results, and that of a study from what it has just left on this
+machine, at the commit that is checked out.
 """
 
 import argparse
@@ -27,6 +27,7 @@ PICTURE_WIDTH = 1400  # pixels
 Builder = Callable[[Path], pd.DataFrame]
 # csv file in cases/<case>/tables -> the results that it needs, and the function that makes it
 OF_CASE: dict[str, tuple[tuple[str, ...], Builder]] = {
+    "summary": (("agreement.csv", "metrics.csv", "discussion.csv"), case_tables.summary),
     "errors": (("metrics.csv",), case_tables.errors),
     "bed": (("dem.json", "bed_series.csv"), case_tables.bed),
     "costs": (("timing.csv",), case_tables.costs),

@@ -2,6 +2,8 @@
 """The README files: each table as its csv file has it, no dead link, a short first page."""
 
 import re
+from importlib import import_module
+from operator import attrgetter
 from pathlib import Path
 
 import pandas as pd
@@ -52,3 +54,12 @@ def test_the_first_page_is_short() -> None:
     assert len(text.splitlines()) <= LINES
     (name,) = named_files(text)
     assert len(pd.read_csv(ROOT / name)) <= NUMBERS
+
+
+def test_each_function_of_the_walk_exists() -> None:
+    rooms = "|".join(folder.name for folder in (ROOT / "scripts/bedchain").iterdir() if folder.is_dir())
+    text = (ROOT / "scripts/README.md").read_text(encoding="utf-8")
+    names = re.findall(rf"`((?:{rooms})\.\w+)\.([\w.]+)`", text)
+    assert len(names) > 10
+    for module, function in names:
+        assert attrgetter(function)(import_module(f"bedchain.{module}")), f"{module}.{function}"

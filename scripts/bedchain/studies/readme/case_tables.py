@@ -26,6 +26,40 @@ def number(value: float) -> str:
     return f"{value:.0f}" if 1000 <= abs(value) < 1e6 else f"{value:.3g}"
 
 
+def summary(results: Path) -> pd.DataFrame:
+    """The numbers of the README at the door, for a case with the paper's claims and repeats."""
+    claimed = pd.read_csv(results / "agreement.csv").set_index(["quantity", "source"])
+    value = pd.read_csv(results / "metrics.csv").set_index(["quantity", "source"])["value"]
+    discussion = pd.read_csv(results / "discussion.csv")
+    another = np.sqrt(1 + 1 / value["realisations", "dem"])  # from the mean of the others, in noise floors
+    floors = {name: _in_floors(discussion, name) / another for name in ("static", "dynamic")}
+    own = floors["static"].index[0]  # the case's own cells and lag come first
+    hours = claimed.loc[("dem_time", "dem")]
+    rows = [
+        (
+            "particles below 0.25 m, mean over 15 to 20 s",
+            "65 % (at 15 s)",
+            f"{100 * value['share_mean_low', 'dem']:.0f} %",
+        )
+    ]
+    lags = {
+        "static, the paper's lag of 0.025 s": ("static", own),
+        "static, lag 0.1 s": ("static", (own[0], 0.1)),
+    }
+    for words, (name, at) in (lags | {"dynamic, 0.025 s": ("dynamic", own)}).items():
+        rows.append(
+            (f"error of the mixing curves, another DEM run: 1; {words}", "", number(floors[name][at]))
+        )
+    rows.append(("5 s of DEM and gas", f"{hours['paper']:.0f} h", f"{hours['ours']:.2g} h"))
+    for quantity, name, words in (
+        ("dem_over_chain_time", "static", "DEM over static chain, in time"),
+        ("dynamic_over_static_time", "dynamic", "dynamic over static matrix, in time"),
+    ):
+        row = claimed.loc[(quantity, name)]
+        rows.append((words, number(row["paper"]), number(row["ours"])))
+    return pd.DataFrame(rows, columns=["", "paper", "here"])
+
+
 def errors(results: Path) -> pd.DataFrame:
     """Errors of each chain's mixing curves, beside what another DEM run has."""
     metrics = pd.read_csv(results / "metrics.csv")
@@ -136,10 +170,16 @@ def steadiness(results: Path) -> pd.DataFrame:
 def cells_and_lags(results: Path) -> pd.DataFrame:
     """Error of the static chain by cell size and lag, in noise floors, from the mean of all realisations."""
     table = pd.read_csv(results / "discussion.csv")
-    floor = np.sqrt((table.loc[table["quantity"] == "noise_floor", "value"] ** 2).mean())
-    static = table[(table["quantity"] == "error_rms") & (table["source"] == "static")]
-    mean = static.groupby(["cell_m", "lag_s"])["value"].agg(lambda part: np.sqrt((part**2).mean()))
-    return by_cell_and_lag(mean / floor)
+    return by_cell_and_lag(_in_floors(table, "static").sort_index())
+
+
+def _in_floors(discussion: pd.DataFrame, chain: str) -> "pd.Series[Any]":
+    """Error of a chain's four curves together by cell size and lag, in the table's order [noise floors]."""
+    squared = discussion.assign(value=discussion["value"] ** 2)
+    floor = squared.loc[squared["quantity"] == "noise_floor", "value"].mean()
+    rows = squared[(squared["quantity"] == "error_rms") & (squared["source"] == chain)]
+    mean = rows.groupby(["cell_m", "lag_s"], sort=False)["value"].mean()
+    return (mean / floor).map(np.sqrt)
 
 
 def by_cell_and_lag(values: "pd.Series[Any]") -> pd.DataFrame:

@@ -47,7 +47,7 @@ def markdown(table: pd.DataFrame) -> str:
     """A table of texts in markdown, with the origin of its rows below it."""
     shown = table.drop(columns=ORIGIN, errors="ignore")
     lines = [list(shown.columns), ["---"] * shown.shape[1], *shown.to_numpy().tolist()]
-    rows = ["| " + " | ".join(cells) + " |" for cells in lines]
+    rows = ["| " + " | ".join(cell.replace("|", r"\|") for cell in cells) + " |" for cells in lines]
     return "\n".join([*rows, *_origins(table)])
 
 

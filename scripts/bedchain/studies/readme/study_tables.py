@@ -163,6 +163,7 @@ def benchmark(results: Path) -> pd.DataFrame:
                 f"{columns} x {rows}" for columns, rows in zip(table["columns"], table["rows"], strict=True)
             ],
             "median": [f"{number(seconds)} s" for seconds in table["median_s"]],
+            "processor": [f"{number(seconds)} s" for seconds in table["cpu_s"]],
             "peak memory": [f"{memory:.0f} MB" for memory in table["peak_rss_mb"]],
             "entries": [f"{count:,}" for count in table["entries"]],
             "target": table["target"],

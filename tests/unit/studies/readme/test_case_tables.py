@@ -111,6 +111,25 @@ def test_cells_and_lags_are_in_noise_floors(tmp_path: Path) -> None:
     assert table.to_dict("records") == [{"cell": "1 cm", "lag 0.5 s": "1.00", "lag 1 s": "2.00"}]
 
 
+def test_summary_is_relative_to_another_dem_run(tmp_path: Path) -> None:
+    claimed = [("dem_time", "dem", 20, 0.6), ("dem_over_chain_time", "static", 80, 5000.0),
+               ("dynamic_over_static_time", "dynamic", 1000, 6.0)]  # fmt: skip
+    pd.DataFrame(claimed, columns=["quantity", "source", "paper", "ours"]).to_csv(
+        tmp_path / "agreement.csv", index=False
+    )
+    values = [("realisations", "dem", 3.0), ("share_mean_low", "dem", 0.647)]
+    pd.DataFrame(values, columns=["quantity", "source", "value"]).to_csv(
+        tmp_path / "metrics.csv", index=False
+    )
+    rows = [("noise_floor", "dem", np.nan, np.nan, part, 0.3) for part in PARTS]
+    for name, lag, error in (("static", 0.025, 0.4), ("static", 0.1, 0.2), ("dynamic", 0.025, 0.3)):
+        rows += [("error_rms", name, 0.01, lag, part, error * np.sqrt(4 / 3)) for part in PARTS]
+    names = ["quantity", "source", "cell_m", "lag_s", "part", "value"]
+    pd.DataFrame(rows, columns=names).to_csv(tmp_path / "discussion.csv", index=False)
+    table = case_tables.summary(tmp_path)
+    assert list(table["here"]) == ["65 %", "1.33", "0.667", "1", "0.6 h", "5000", "6"]
+
+
 def test_claims_keep_their_reasons(tmp_path: Path) -> None:
     row = {"claim": "half, crossed", "where": "Fig. 5", "quantity": "q", "source": "dem", "paper": 0.5,
            "ours": 0.5626, "unit": "1", "tolerance": 0.1, "within": "yes", "why": "mixed"}  # fmt: skip

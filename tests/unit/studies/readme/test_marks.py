@@ -40,6 +40,11 @@ def test_an_empty_block_and_a_text_without_marks(tmp_path: Path) -> None:
     assert filled("no marks\n", root) == "no marks\n"
 
 
+def test_a_bar_in_a_cell_does_not_end_it(tmp_path: Path) -> None:
+    root = folder(tmp_path, "what,source\n|x|,y\n")
+    assert r"| \|x\| |" in filled("<!-- table: t/a.csv -->\n<!-- end -->", root)
+
+
 def test_each_origin_is_said_once(tmp_path: Path) -> None:
     root = folder(tmp_path, "what,machine,source\na,EPYC,\nb,EPYC,\nc,,README of commit x\n")
     end = filled("<!-- table: t/a.csv -->\n<!-- end -->", root).splitlines()[-2]

@@ -118,8 +118,8 @@ def test_validation_verification_peers_and_benchmark(tmp_path: Path) -> None:
     assert list(study_tables.peers(tmp_path).iloc[0]) == [
         "paper", "Yade", "3195", "2981 to 3272", "5.54", "", "212.1 mm", "20 ms", "no gas"]  # fmt: skip
     task = {"work": "counts", "method": "bedchain", "particles": 81000, "columns": 27, "rows": 105,
-            "median_s": 0.14,
+            "median_s": 0.14, "cpu_s": 0.12,
             "peak_rss_mb": 339.2, "entries": 77726, "target": "", "met": ""}  # fmt: skip
     pd.DataFrame([task]).to_csv(tmp_path / "benchmark_core.csv", index=False)
     assert list(study_tables.benchmark(tmp_path).iloc[0])[2:] == [
-        "81,000", "27 x 105", "0.14 s", "339 MB", "77,726", "", ""]  # fmt: skip
+        "81,000", "27 x 105", "0.14 s", "0.12 s", "339 MB", "77,726", "", ""]  # fmt: skip
