@@ -117,6 +117,12 @@ def test_summary_is_relative_to_another_dem_run(tmp_path: Path) -> None:
     pd.DataFrame(claimed, columns=["quantity", "source", "paper", "ours"]).to_csv(
         tmp_path / "agreement.csv", index=False
     )
+    case = {
+        "bed": {"width_m": 0.1, "height_m": 0.4},
+        "cells": {"columns": 10, "rows": 40},
+        "chain": {"lag_s": 0.025},
+    }
+    (tmp_path / "provenance.json").write_text(json.dumps({"case": {"values": case}}))
     values = [("realisations", "dem", 3.0), ("share_mean_low", "dem", 0.647)]
     pd.DataFrame(values, columns=["quantity", "source", "value"]).to_csv(
         tmp_path / "metrics.csv", index=False
