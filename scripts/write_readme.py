@@ -31,7 +31,7 @@ OF_CASE: dict[str, tuple[tuple[str, ...], Builder]] = {
     "errors": (("metrics.csv",), case_tables.errors),
     "bed": (("dem.json", "bed_series.csv"), case_tables.bed),
     "costs": (("timing.csv",), case_tables.costs),
-    "claims": (("agreement.csv",), case_tables.claims),
+    "agreement": (("agreement.csv",), case_tables.agreement),
     "steadiness": (("stationarity.csv",), case_tables.steadiness),
     "cells_and_lags": (("discussion.csv",), case_tables.cells_and_lags),
     "presets": (("tradeoff.csv", "presets.yaml"), study_tables.presets),

@@ -172,7 +172,7 @@ def test_help_names_each_target_key_and_case() -> None:
     keys = set(re.findall(r"config\.get\(\"(\w+)\"", "".join(workflow.values())))
     assert len(targets) > 5
     assert targets <= words
-    assert keys - {"studies", "fidelity"} <= words  # of the paper's module; the old word for preset
+    assert keys - {"studies"} <= words  # of the paper's module
     assert {file.parent.name for file in (ROOT / "cases").glob("*/case.yaml")} <= words
 
 

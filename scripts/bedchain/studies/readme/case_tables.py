@@ -145,7 +145,7 @@ def costs(results: Path) -> pd.DataFrame:
     return _listed(rows)
 
 
-def claims(results: Path) -> pd.DataFrame:
+def agreement(results: Path) -> pd.DataFrame:
     """The paper's claims beside what came out."""
     table = pd.read_csv(results / "agreement.csv")
     kept = table[["claim", "paper", "ours", "unit", "within", "why"]].copy()

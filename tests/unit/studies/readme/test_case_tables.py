@@ -140,7 +140,7 @@ def test_claims_keep_their_reasons(tmp_path: Path) -> None:
     row = {"claim": "half, crossed", "where": "Fig. 5", "quantity": "q", "source": "dem", "paper": 0.5,
            "ours": 0.5626, "unit": "1", "tolerance": 0.1, "within": "yes", "why": "mixed"}  # fmt: skip
     pd.DataFrame([row]).to_csv(tmp_path / "agreement.csv", index=False)
-    assert list(case_tables.claims(tmp_path).iloc[0]) == [
+    assert list(case_tables.agreement(tmp_path).iloc[0]) == [
         "half, crossed",
         "0.5",
         "0.563",
