@@ -16,7 +16,7 @@ import pandas as pd
 from PIL import Image
 
 from bedchain.errors import UserError
-from bedchain.files import complete, write_csv
+from bedchain.files import atomic_file, write_csv
 from bedchain.stage import LOG, stage
 from bedchain.studies.readme import case_tables, study_tables
 from bedchain.studies.readme.marks import filled
@@ -96,7 +96,7 @@ def write_readme(case: str | None, study: str | None, root: Path = Path()) -> No
     for readme in sorted(file for pattern in READMES for file in root.glob(pattern)):
         text = readme.read_text(encoding="utf-8")
         if (new := filled(text, root)) != text:
-            with complete(readme) as temporary:
+            with atomic_file(readme) as temporary:
                 temporary.write_text(new, encoding="utf-8")
             LOG.info("%s: tables written", readme)
 
@@ -126,7 +126,7 @@ def copy_picture(figure: Path, target: Path) -> None:
     with Image.open(figure) as picture:
         width = min(PICTURE_WIDTH, picture.width)
         small = picture.convert("RGB").resize((width, round(picture.height * width / picture.width)))
-    with complete(target) as temporary:
+    with atomic_file(target) as temporary:
         small.quantize(256).save(temporary, optimize=True)
 
 
