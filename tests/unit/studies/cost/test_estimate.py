@@ -15,18 +15,18 @@ from bedchain.studies.cost import machine_speed
 from bedchain.studies.cost.actual import (
     FACTOR_AIM,
     TOTAL,
-    compared,
-    errors_happened,
-    happened,
-    outside,
+    actual_cost,
+    actual_error,
+    beside_actual,
+    far_from_estimate,
     settling_loop,
 )
 from bedchain.studies.cost.estimate import error_of, predicted, run_disk
-from bedchain.studies.cost.machine_speed import Bed, Speed
+from bedchain.studies.cost.machine_speed import BedSize, Speed
 from made import ROOT
 
 LIKE = Speed(1, 1, 1, 1, "the reference itself")
-PAPER = Bed(81000, 2, 54 * 210, 3.125e-5, 5e-4)
+PAPER = BedSize(81000, 2, 54 * 210, 3.125e-5, 5e-4)
 SOLVER_STAGES = ["settling", "dem", "exchange", "gas", "segment_starts", "repeats"]
 
 
@@ -63,7 +63,7 @@ def test_solver_by_hand_and_near_what_was_measured():
     assert found["gas"] == pytest.approx(2000 * (1.7e-3 + 2.3e-6 * 11340 / 2))
     # 301 s a simulated second on two ranks, 577 s on one (results/peers)
     assert sum(found.values()) == pytest.approx(301, rel=0.05)
-    alone = Bed(81000, 1, 11340, 3.125e-5, 5e-4)
+    alone = BedSize(81000, 1, 11340, 3.125e-5, 5e-4)
     assert sum(machine_speed.solver_seconds(alone, 1.0, cores=2).values()) == pytest.approx(577, rel=0.05)
 
 
@@ -77,19 +77,19 @@ def test_ranks_without_cores_of_their_own_take_turns():
 
 def test_rates_lie_between_those_measured_and_stay_beyond():
     table = ((10, 100.0), (1000, 300.0))
-    beds = [Bed(number, 2, 0, 1e-5, 1e-4) for number in (2, 20, 200, 2000, 20000)]
+    beds = [BedSize(number, 2, 0, 1e-5, 1e-4) for number in (2, 20, 200, 2000, 20000)]
     assert [machine_speed.per_rank(table, bed) for bed in beds] == pytest.approx([100, 100, 200, 300, 300])
 
 
 def test_without_gas_only_particles_cost():
-    found = machine_speed.solver_seconds(Bed(1000, 1, 0, 1e-5, 5e-4), 2.0)
+    found = machine_speed.solver_seconds(BedSize(1000, 1, 0, 1e-5, 5e-4), 2.0)
     assert found["dem"] > 0 and found["exchange"] == found["gas"] == 0
 
 
 def test_the_speed_is_that_of_the_run_nearest_in_size(tmp_path):
     usual = machine_speed.solver_seconds(PAPER, 1.0)
     near = write_run(tmp_path / "near", {name: 2 * usual[name] for name in machine_speed.SOLVERS})
-    small = Bed(900, 2, 100, 2e-5, 5e-4)
+    small = BedSize(900, 2, 100, 2e-5, 5e-4)
     far = write_run(tmp_path / "far", machine_speed.solver_seconds(small, 1.0), small, cells=(10, 1, 10))
     speed = machine_speed.calibrate([far, near, tmp_path / "none.json"], PAPER)
     assert (speed.dem, speed.exchange, speed.gas) == pytest.approx((0.5, 0.5, 0.5))
@@ -186,14 +186,14 @@ def folders(results):
 
 
 def test_what_happened_is_set_against_the_part_that_was_done(short, results):
-    table = compared(predicted(short, LIKE), happened(short, results, results, folders(results)))
+    table = beside_actual(predicted(short, LIKE), actual_cost(short, results, results, folders(results)))
     for name in machine_speed.SOLVERS:
         assert table.loc[name, "done_1"] == pytest.approx(0.4)
         assert table.loc[name, "ratio_1"] == pytest.approx(1.2)
     assert table.loc[TOTAL, "ratio_1"] == pytest.approx(1.2)
     assert table.loc[TOTAL, "wall_s"] == pytest.approx(table["wall_s"].drop(TOTAL).sum())
     assert table.loc[["settling", "repeats", "parse_dumps"], "ratio_1"].isna().all()
-    assert outside(table) == []
+    assert far_from_estimate(table) == []
 
 
 def test_jobs_settling_repeats_and_errors_that_happened(short, results):
@@ -206,7 +206,7 @@ def test_jobs_settling_repeats_and_errors_that_happened(short, results):
     (results / "dem/stamp/settled/liggghts.log").write_text(log)
     (results / "trajectory.npy").write_bytes(b"x" * 1000)
     write_run(results / "repeats/1", {"dem": 20.0, "exchange": 1, "gas": 4}, spans=((3.5, 5.5),))
-    found = happened(short, results, results, folders(results))
+    found = actual_cost(short, results, results, folders(results))
     assert found.loc["settling", "happened_wall_s"] == 12.5
     assert found.loc["dem", "happened_memory_mb"] == 111
     assert found.loc["parse_dumps", "happened_disk_mb"] == pytest.approx(1e-3)
@@ -216,14 +216,14 @@ def test_jobs_settling_repeats_and_errors_that_happened(short, results):
 
 
 def test_nothing_has_happened_yet(short, tmp_path):
-    table = compared(predicted(short, LIKE), happened(short, tmp_path, tmp_path, folders(tmp_path)))
+    table = beside_actual(predicted(short, LIKE), actual_cost(short, tmp_path, tmp_path, folders(tmp_path)))
     assert table["ratio_1"].isna().all() and table.loc[TOTAL, "wall_s"] > 0
 
 
 def test_stages_outside_the_factor_are_named():
     ratios = [1 / 1.6, 1 / 1.4, 1.4, 1.6, math.nan]
     table = pd.DataFrame({"ratio_1": ratios}, index=["fast", "a", "b", "slow", "unknown"])
-    assert FACTOR_AIM == 1.5 and outside(table) == ["fast", "slow"]
+    assert FACTOR_AIM == 1.5 and far_from_estimate(table) == ["fast", "slow"]
 
 
 def test_the_time_of_settling_is_in_liggghts_s_log(tmp_path):
@@ -239,8 +239,8 @@ def test_errors_in_noise_floors_by_hand(tmp_path, short):
     rows += [("error_rms_left", "static", 0.3), ("error_rms_right", "static", 0.1)]
     rows += [("error_rms_low", "static", 0.1), ("error_rms_up", "static", 0.1)]
     pd.DataFrame(rows, columns=["quantity", "source", "value"]).to_csv(file, index=False)
-    assert errors_happened(file, "static") == pytest.approx(math.sqrt((9 + 1 + 1 + 1) / 4))
-    assert math.isnan(errors_happened(file, "dynamic"))
-    assert math.isnan(errors_happened(tmp_path / "none.csv", "static"))
-    found = happened(short, tmp_path, tmp_path, folders(tmp_path))
+    assert actual_error(file, "static") == pytest.approx(math.sqrt((9 + 1 + 1 + 1) / 4))
+    assert math.isnan(actual_error(file, "dynamic"))
+    assert math.isnan(actual_error(tmp_path / "none.csv", "static"))
+    found = actual_cost(short, tmp_path, tmp_path, folders(tmp_path))
     assert found.loc["run_chain_static", "happened_error_floors"] == pytest.approx(math.sqrt(3))

@@ -13,7 +13,7 @@ import pytest
 from bedchain.case.parameters import Parameter
 from bedchain.errors import UserError
 from bedchain.studies.peers import bedfoam, dpmfoam, lammps, liggghts
-from bedchain.studies.peers.bed import Bed, fluidized_bed, with_numbers, write_inputs
+from bedchain.studies.peers.bed import PeerBed, fluidized_bed, with_numbers, write_inputs
 from bedchain.studies.peers.peer import Outcome, Peer
 from bedchain.studies.peers.plots import draw
 from bedchain.studies.peers.study import (
@@ -51,7 +51,7 @@ Loop time of 6.45472 on 1 procs for 2500 steps with 9000 atoms
 @pytest.fixture
 def bed():
     """Three particles in a box of 4 x 12 cells."""
-    return Bed("box", [Parameter(name, value, "-", "test") for name, value in NUMBERS.items()], PARTICLES)
+    return PeerBed("box", [Parameter(name, value, "-", "test") for name, value in NUMBERS.items()], PARTICLES)
 
 
 def code(name, costs, folder, calls, gas=False, fails=False, particles=3):

@@ -9,10 +9,11 @@ import pytest
 
 from bedchain.chains.registry import LEARNERS, learn
 from bedchain.errors import UserError
-from bedchain.studies.records import only, record_of, remembered, stamp
+from bedchain.studies.candidates import Candidate, grid_of
+from bedchain.studies.marked_starts import split, starts_in
+from bedchain.studies.records import record_of, remembered, remove_other_results, stamp
 from bedchain.studies.scan import at_frames
-from bedchain.studies.scores.candidates import SETTINGS, Candidate, candidates, grid_of, scaled
-from bedchain.studies.scores.marked_starts import split, starts_in
+from bedchain.studies.scores.search_spaces import SEARCH_SPACES, candidates, scaled
 from bedchain.trajectory.grid import Grid
 from bedchain.trajectory.realisations import open_realisation, open_repeats, part_of
 from bedchain.uncertainty.bands import memory
@@ -83,7 +84,7 @@ def test_every_option_tried_is_one_of_its_model():
 def test_baselines_compete_as_models_of_their_own():
     names = {one.name for one in candidates(LEARNERS, GRID, 1, 1e-3) if one.model == "recurrence"}
     assert names == {"recurrence", "recurrence_shuffled", "recurrence_replay"}
-    assert set(SETTINGS) <= set(LEARNERS)
+    assert set(SEARCH_SPACES) <= set(LEARNERS)
 
 
 def test_cells_finer_than_a_particle_are_left_out():
@@ -167,8 +168,8 @@ def test_a_stamp_changes_with_data_and_settings_and_old_results_go(tmp_path):
     assert stamp([file], {"lag": 1}) == first and stamp([file], {"lag": 2}) != first
     file.write_bytes(b"2")
     assert stamp([file], {"lag": 1}) != first
-    (only(tmp_path / "kept" / first) / "result").write_text("x")
-    only(tmp_path / "kept" / "new")
+    (remove_other_results(tmp_path / "kept" / first) / "result").write_text("x")
+    remove_other_results(tmp_path / "kept" / "new")
     assert [folder.name for folder in (tmp_path / "kept").iterdir()] == ["new"]
 
 

@@ -23,11 +23,11 @@ from bedchain.physics.contacts import contact_modulus, static_overlap
 from bedchain.studies.stability import theory
 from bedchain.studies.stability.bed_runs import Expected, checks, momentum, observe
 from bedchain.studies.stability.bed_settings import bed_settings
-from bedchain.studies.stability.beds import Bed, case_of, changes, clock, scene, times, two_digits
+from bedchain.studies.stability.beds import StabilityBed, case_of, changes, clock, scene, times, two_digits
 from bedchain.studies.stability.chain_settings import chain_settings
 from bedchain.studies.stability.collisions import Collision, pairs
 from bedchain.studies.stability.maps import draw_maps
-from bedchain.studies.stability.settings import Setting, chosen
+from bedchain.studies.stability.settings import StabilitySetting, chosen
 from bedchain.studies.stability.study import limited, row_of, run_study
 from bedchain.studies.stability.theory import Limit
 from bedchain.studies.stability.verdict import (
@@ -121,7 +121,7 @@ def test_the_stiffest_wave_of_closest_discs_is_that_of_the_lattice():
 
 
 def test_central_differences_diverge_just_above_the_oscillators_limit():
-    bed = Bed(young=1e6)
+    bed = StabilityBed(young=1e6)
     small = scene(bed)
     limit = theory.oscillator_step(small, bed.number)
     omega = 2 / limit
@@ -135,9 +135,9 @@ def test_central_differences_diverge_just_above_the_oscillators_limit():
 
 def test_beds_of_any_size_are_alike():
     for diameter, density in ((5e-5, 2600.0), (5e-3, 2600.0), (1e-3, 12000.0)):
-        one = Bed(diameter=diameter, density=density)
+        one = StabilityBed(diameter=diameter, density=density)
         assert theory.overlap_at_rest(scene(one), one.number) == pytest.approx(
-            theory.overlap_at_rest(scene(Bed()), Bed().number)
+            theory.overlap_at_rest(scene(StabilityBed()), StabilityBed().number)
         )
         ratio = clock(one)["dem_step_s"] / theory.rayleigh(scene(one))
         assert 0.15 < ratio <= 0.18
@@ -146,7 +146,7 @@ def test_beds_of_any_size_are_alike():
 @pytest.mark.parametrize("gas_step", [1e-5, 1e-4, 1e-2])
 @pytest.mark.parametrize("diameter", [5e-5, 5e-3])
 def test_times_of_a_bed_nest_and_it_can_be_run(gas_step, diameter, tmp_path):
-    bed = Bed(diameter=diameter, gas_step=gas_step)
+    bed = StabilityBed(diameter=diameter, gas_step=gas_step)
     if gas_step > theory.free_fall_limit(scene(bed), gas_step).value:
         with pytest.raises(CaseError, match="time.gas_step_s"):
             loaded(bed, tmp_path)
@@ -167,7 +167,7 @@ def test_numbers_have_few_digits_and_their_multiples_are_exact():
     assert two_digits(4.4219e-8) == 4.4e-8
     assert two_digits(2.0e-5) == 2.0e-5
     assert times(5e-5, 20) == 1e-3
-    assert changes(Bed(velocity=0.3, cell=4)) == {
+    assert changes(StabilityBed(velocity=0.3, cell=4)) == {
         "gas.superficial_velocity_m_s": 0.3, "gas.cell_size_m": 4e-3, "discussion.cell_sizes_m": [4e-3],
     }  # fmt: skip
 
@@ -175,11 +175,11 @@ def test_numbers_have_few_digits_and_their_multiples_are_exact():
 @pytest.mark.parametrize(
     ("bed", "key", "better"),
     [
-        (Bed(young=5e3, dem_step=5e-5), "contact.young_modulus_Pa", {"young": 2.5e4}),
-        (Bed(density=11.9, velocity=0.1), "gas.density_kg_m3", {"density": 12.1}),
-        (Bed(gas_step=1.2e-2), "time.gas_step_s", {"gas_step": 3e-3}),
-        (Bed(cell=10), "gas.cell_size_m", {"cell": 5}),
-        (Bed(dem_step=2.2e-5), "time.dem_step_s", {"dem_step": 2e-5}),
+        (StabilityBed(young=5e3, dem_step=5e-5), "contact.young_modulus_Pa", {"young": 2.5e4}),
+        (StabilityBed(density=11.9, velocity=0.1), "gas.density_kg_m3", {"density": 12.1}),
+        (StabilityBed(gas_step=1.2e-2), "time.gas_step_s", {"gas_step": 3e-3}),
+        (StabilityBed(cell=10), "gas.cell_size_m", {"cell": 5}),
+        (StabilityBed(dem_step=2.2e-5), "time.dem_step_s", {"dem_step": 2e-5}),
     ],
     ids=["soft", "light", "slow_gas", "coarse_gas", "long_step"],
 )
@@ -192,35 +192,35 @@ def test_settings_beyond_a_limit_are_refused_and_those_within_are_not(bed, key, 
 
 
 def test_the_deepest_overlap_is_that_of_a_fall_of_one_diameter_where_particles_are_stiff():
-    stiff = scene(Bed(young=1e9))
+    stiff = scene(StabilityBed(young=1e9))
     overlap = theory.deepest_overlap(stiff, 64) * stiff.diameter
     modulus = contact_modulus(stiff.young, stiff.poisson)
     stored = 8 / 15 * modulus * math.sqrt(stiff.diameter / 4) * overlap**2.5
     mass = stiff.density * math.pi / 6 * stiff.diameter**3
     assert stored == pytest.approx(mass / 2 * 9.81 * stiff.diameter / 2, rel=1e-3)
-    soft = scene(Bed(young=1e4))
+    soft = scene(StabilityBed(young=1e4))
     assert theory.deepest_overlap(soft, 64) == pytest.approx(3 * theory.overlap_at_rest(soft, 64))
 
 
 def test_the_limits_of_the_checks_are_those_of_the_theory():
-    bed = Bed(young=5e3)
+    bed = StabilityBed(young=5e3)
     assert theory.overlap_at_rest(scene(bed), bed.number) > OVERLAP_AT_REST_MAX
-    assert theory.free_fall_limit(scene(Bed()), 1e-3).value == pytest.approx(
+    assert theory.free_fall_limit(scene(StabilityBed()), 1e-3).value == pytest.approx(
         FREE_FALL_SHARE_MAX * math.sqrt(2 * 5e-3 / 9.81)
     )
     assert theory.density_limit(0.2).share == pytest.approx(2.0)
-    still = theory.gas_step_limit(scene(Bed(velocity=0.0)), 1e-3)
+    still = theory.gas_step_limit(scene(StabilityBed(velocity=0.0)), 1e-3)
     assert still.formula.endswith("sqrt(2 cell / g)")
-    fast = theory.gas_step_limit(scene(Bed(velocity=5.0)), 1e-3)
+    fast = theory.gas_step_limit(scene(StabilityBed(velocity=5.0)), 1e-3)
     assert fast.share == pytest.approx(5.0 / 0.4 * 1e-3 / 5e-3)
     assert GAS_CELL_MAX == 0.5
 
 
 def test_a_layer_whose_lattice_is_higher_than_the_box_is_refused(tmp_path):
     # 17 columns and 51 rows of 1.15 diameters; more would silently not be there
-    assert loaded(Bed(number=17 * 51), tmp_path)
+    assert loaded(StabilityBed(number=17 * 51), tmp_path)
     with pytest.raises(CaseError, match="particles.number.*take at most"):
-        loaded(Bed(number=17 * 51 + 1), tmp_path)
+        loaded(StabilityBed(number=17 * 51 + 1), tmp_path)
 
 
 def test_what_must_be_carried_follows_from_the_motion():
@@ -232,7 +232,7 @@ def test_what_must_be_carried_follows_from_the_motion():
 
 
 def test_one_particle_or_few_may_have_any_gas_cell(tmp_path):
-    assert loaded(Bed(number=1, cell=20), tmp_path)
+    assert loaded(StabilityBed(number=1, cell=20), tmp_path)
 
 
 def made_series(**columns):
@@ -263,7 +263,7 @@ def made_series(**columns):
     ],
 )
 def test_whatever_is_wrong_with_a_bed_is_seen(columns, said):
-    case = case_of(Bed())
+    case = case_of(StabilityBed())
     good = observe(case, made_series())
     expected = Expected(overlap=0.01, reference="x")
     assert judge(checks(good, expected, good)).outcome == STABLE
@@ -310,7 +310,7 @@ def test_a_setting_that_breaks_is_a_verdict_and_a_users_error_is_told():
 
 def setting(name, run, group="made up", inputs="1", **more):
     """A setting that does what it is told."""
-    return Setting(group, name, {"x_1": 1.0}, Limit("x [1]", 2.0, "x < 2", 1.0), run, inputs, **more)
+    return StabilitySetting(group, name, {"x_1": 1.0}, Limit("x [1]", 2.0, "x < 2", 1.0), run, inputs, **more)
 
 
 def noting(file, verdict):

@@ -9,7 +9,13 @@ from scipy import stats
 
 from bedchain.measures.batch import total_variation
 from bedchain.studies.tradeoff.measured_chains import MOMENTS, half_moments
-from bedchain.studies.tradeoff.observables import Reference, Seen, curve_errors, density_errors, scalar_errors
+from bedchain.studies.tradeoff.observables import (
+    BedObservables,
+    Reference,
+    curve_errors,
+    density_errors,
+    scalar_errors,
+)
 from bedchain.studies.tradeoff.reference import granular_temperature, mixing_time
 from bedchain.uncertainty.noise_floor import noise_floor
 from made.realisations import realisations
@@ -55,7 +61,7 @@ def test_further_realisations_join_the_reference():
         whole.curves[:4], True, whole.densities[:4], {"bed_height": whole.scalars["bed_height"][:4]}
     )
     others = [
-        Seen(whole.curves[at], whole.densities[at], {"bed_height": whole.scalars["bed_height"][at]})
+        BedObservables(whole.curves[at], whole.densities[at], {"bed_height": whole.scalars["bed_height"][at]})
         for at in (4, 5)
     ]
     joined = first.joined(others)

@@ -15,7 +15,7 @@ from bedchain.physics.contacts import rayleigh_time
 from bedchain.physics.whole_numbers import is_multiple
 from bedchain.studies.tradeoff import simulated_beds
 from bedchain.studies.tradeoff.bed_variants import BedVariant, bed_variants, variants_or_exit, wanted_variants
-from bedchain.studies.tradeoff.observables import Seen
+from bedchain.studies.tradeoff.observables import BedObservables
 from bedchain.studies.tradeoff.simulated_beds import on_one_rank, simulate_all, solver_memory
 from made.realisations import realisations
 
@@ -34,7 +34,7 @@ def test_a_realisation_is_not_compared_with_itself(monkeypatch, tmp_path):
 
     def bed_row(case_file, one, folder):
         name = one.variant.name
-        bed = Seen(reference.curves[0], reference.densities[0], {"bed_height": known[name]})
+        bed = BedObservables(reference.curves[0], reference.densities[0], {"bed_height": known[name]})
         return {"variant": name, "cost_s": 1.0, "problem": ""}, bed
 
     monkeypatch.setattr(simulated_beds, "bed_row", bed_row)
