@@ -1,13 +1,18 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Synthetic particles that move similarly to a bubbling bed, for benchmarks only."""
+"""Synthetic particles: walkers whose statistics are known, and a bed that stirs like a bubbling one."""
 
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
 from numba import njit
+from numpy.typing import NDArray
 
 from bedchain.files import write_npy_header
+from bedchain.trajectory.frames import Frames
 from bedchain.trajectory.grid import Grid
+
+INTERVAL_S = 0.025
 
 # The bed of the paper at rest, and motion that reaches about as many cells in 0.025 s as a simulation.
 REST_HEIGHT_M = 0.35
@@ -19,6 +24,89 @@ PUSH_M_S = 0.5
 BUBBLES = 6
 YOUNG_RADIUS_M = 0.02
 GROWTH_M_S = 0.1
+
+
+def persistent_walk(
+    n_frames: int, n_particles: int, size_m: tuple[float, float], memory_s: float, speed_m_s: float, seed: int
+) -> Frames:
+    """Frames of `free_walk` in a box whose walls turn particles back; all cells are 0 (see `on_grid`).
+
+    Parameters
+    ----------
+    n_frames, n_particles : int
+    size_m : (float, float)
+        Width and height of the box [m].
+    memory_s, speed_m_s : float
+        Of `free_walk` [s], [m/s].
+    seed : int
+    """
+    rng, axes = np.random.default_rng(seed), []
+    for size in size_m:
+        velocity, start = rng.normal(0, speed_m_s, n_particles), rng.uniform(0, size, n_particles)
+        x, v = free_walk(velocity, n_frames, memory_s, speed_m_s, rng)
+        axes.append(folded(start + x, v, size))
+    (x, vx), (z, vz) = axes
+    times_s = INTERVAL_S * np.arange(n_frames, dtype=np.float64)
+    return Frames(times_s, x, z, np.zeros(x.shape, np.int32), vx, vz)
+
+
+def free_walk(
+    velocity_m_s: NDArray[np.float64],
+    n_frames: int,
+    memory_s: float,
+    speed_m_s: float,
+    rng: np.random.Generator,
+) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+    """Walk along one axis of particles whose velocity forgets itself exponentially, exact at the frames.
+
+    The mean-square displacement is ``2 (s T)^2 (t / T - 1 + exp(-t / T))`` with the speed s and the memory T
+    (Uhlenbeck and Ornstein 1930, Phys. Rev. 36, 823).
+
+    Parameters
+    ----------
+    velocity_m_s : (n_particles,) array
+        In the first frame [m/s].
+    n_frames : int
+        `INTERVAL_S` apart.
+    memory_s : float
+        Time after which the velocity's autocorrelation is 1/e [s].
+    speed_m_s : float
+        Standard deviation of the velocity [m/s].
+    rng : numpy Generator
+
+    Returns
+    -------
+    positions, velocities : (n_frames, n_particles) array
+        From 0 on [m], [m/s].
+    """
+    keep = np.exp(-INTERVAL_S / memory_s)
+    # the changes of velocity and position over a step are two correlated normal numbers
+    a, b = INTERVAL_S / memory_s, 1 - keep
+    covariance = np.array(
+        [[1 - keep**2, memory_s * b**2], [memory_s * b**2, memory_s**2 * (2 * a - 4 * b + 1 - keep**2)]]
+    )
+    root = np.linalg.cholesky(covariance) * speed_m_s
+    x, v = np.zeros(velocity_m_s.size), velocity_m_s
+    walk = np.empty((2, n_frames, velocity_m_s.size))
+    for frame in range(n_frames):
+        walk[:, frame] = x, v
+        kick = root @ rng.normal(size=(2, velocity_m_s.size))
+        x, v = x + memory_s * b * v + kick[1], keep * v + kick[0]
+    return walk[0], walk[1]
+
+
+def folded(
+    x_m: NDArray[np.float64], v_m_s: NDArray[np.float64], size_m: float
+) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+    """Positions and velocities between walls at 0 and ``size_m``: mirrored back, and turned."""
+    phase = np.mod(x_m, 2 * size_m)
+    back = phase > size_m
+    return np.where(back, 2 * size_m - phase, phase), np.where(back, -v_m_s, v_m_s)
+
+
+def on_grid(frames: Frames, grid: Grid) -> Frames:
+    """The same frames with the cells of a grid."""
+    return replace(frames, cells=grid.cell_of(frames.x_m, frames.z_m))
 
 
 @njit(cache=True)
@@ -61,7 +149,7 @@ def write_cells(
     n_particles: int,
     n_frames: int,
     seed: int,
-    interval_s: float = 0.025,
+    interval_s: float = INTERVAL_S,
     places: bool = False,
 ) -> None:
     """Write cells or positions of a synthetic bubbling bed, with one frame in memory at a time.

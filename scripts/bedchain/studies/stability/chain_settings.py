@@ -24,13 +24,13 @@ from bedchain.studies.stability.walkers import (
     WIDTH,
     lifted,
     lifted_last,
-    on_grid,
     repeated,
     walkers,
     with_drain,
 )
 from bedchain.trajectory.frames import Frames
 from bedchain.trajectory.grid import Grid
+from bedchain.trajectory.synthetic import on_grid
 
 FRAMES, PARTICLES = 41, 400
 HISTORY = {"dynamic": 2}  # lags between the first and last frame of a move; 1 for the other models

@@ -6,15 +6,14 @@ from dataclasses import replace
 import numpy as np
 
 from bedchain.trajectory.frames import Frames
-from bedchain.trajectory.grid import Grid
+from bedchain.trajectory.synthetic import persistent_walk
 
 WIDTH, HEIGHT, DIAMETER = 0.04, 0.06, 1e-3  # [m]
-INTERVAL = 0.025  # [s]
-MEMORY, SPEED = 0.8, 0.1  # of a velocity from frame to frame [1]; its spread along each axis [m/s]
+MEMORY, SPEED = 0.1, 0.1  # of the velocity: time of its autocorrelation [s], spread along each axis [m/s]
 
 
 def walkers(n_frames: int, n_particles: int, seed: int = 1, top: float = 1.0) -> Frames:
-    """Frames of walkers that walls turn back; all cells are 0 (`on_grid` gives them theirs).
+    """Frames of a persistent walk in the box; all cells are 0 (`synthetic.on_grid` gives them theirs).
 
     Parameters
     ----------
@@ -23,27 +22,7 @@ def walkers(n_frames: int, n_particles: int, seed: int = 1, top: float = 1.0) ->
     top : float
         Share of the height that they use.
     """
-    rng = np.random.default_rng(seed)
-    axes = []
-    for size in (WIDTH, top * HEIGHT):
-        place, speed = rng.uniform(0, size, n_particles), rng.normal(0, SPEED, n_particles)
-        frames = np.empty((2, n_frames, n_particles))
-        for frame in range(n_frames):
-            frames[:, frame] = place, speed
-            moved = np.mod(place + INTERVAL * speed, 2 * size)
-            back = moved > size
-            place = np.where(back, 2 * size - moved, moved)
-            kick = SPEED * np.sqrt(1 - MEMORY**2) * rng.normal(size=n_particles)
-            speed = MEMORY * np.where(back, -speed, speed) + kick
-        axes.append(frames)
-    (x, vx), (z, vz) = axes
-    times_s = INTERVAL * np.arange(n_frames, dtype=np.float64)
-    return Frames(times_s, x, z, np.zeros(x.shape, np.int32), vx, vz)
-
-
-def on_grid(frames: Frames, grid: Grid) -> Frames:
-    """The same frames with the cells of a grid."""
-    return replace(frames, cells=grid.cell_of(frames.x_m, frames.z_m))
+    return persistent_walk(n_frames, n_particles, (WIDTH, top * HEIGHT), MEMORY, SPEED, seed)
 
 
 def with_drain(frames: Frames) -> Frames:
