@@ -13,6 +13,16 @@ def framed(cells: np.ndarray, grid: Grid) -> Frames:
     return Frames(np.arange(len(cells)) * 0.025, x, z, cells.astype(np.int32))
 
 
+def hopping_cells(seed: int, n_frames: int = 30, n_particles: int = 200, n_cells: int = 12) -> np.ndarray:
+    """Particles that hop to a neighbour, so that some cells fill and others stay almost empty."""
+    rng = np.random.default_rng(seed)
+    cells = np.empty((n_frames, n_particles), np.int32)
+    cells[0] = rng.integers(0, n_cells // 2, n_particles)
+    for frame in range(1, n_frames):
+        cells[frame] = np.clip(cells[frame - 1] + rng.integers(-1, 2, n_particles), 0, n_cells - 1)
+    return cells
+
+
 def stirred(seed: int = 0, n_frames: int = 60, n_particles: int = 400) -> tuple[Frames, Grid]:
     """Particles with a memory of their direction on a small bed."""
     rng = np.random.default_rng(seed)

@@ -113,16 +113,20 @@ def time_rows(chain: MarkovChain, start: NDArray[np.float64], least_share: float
     Returns
     -------
     list of dict
-        mixing_time; residence_time (part: mean over the particles, shortest and longest of the cells);
-        first_passage_time, left out where some particles never get there.
+        mixing_time; residence_time (part: mean over the particles, shortest and longest of the cells),
+        left out where no cell is ever left; first_passage_time, left out where some particles never get
+        there.
     """
     residence, held = residence_in_cells(chain, start)
-    usual = (held >= least_share) & np.isfinite(residence)
-    mean = float((residence[usual] * held[usual]).sum() / held[usual].sum())
-    of = {"mean": mean, "shortest": residence[usual].min(), "longest": residence[usual].max()}
     where = {"lag_s": chain.lag_s}
     rows = [row("mixing_time", chain.name, mixing_time(chain.matrix, chain.lag_s), "s", **where)]
-    rows += [row("residence_time", chain.name, value, "s", part=part, **where) for part, value in of.items()]
+    usual = (held >= least_share) & np.isfinite(residence)
+    if usual.any():
+        mean = float((residence[usual] * held[usual]).sum() / held[usual].sum())
+        of = {"mean": mean, "shortest": residence[usual].min(), "longest": residence[usual].max()}
+        rows += [
+            row("residence_time", chain.name, value, "s", part=part, **where) for part, value in of.items()
+        ]
     passage = passage_time(chain, start, top)
     if np.isfinite(passage):
         height = top * chain.grid.cell_height_m

@@ -198,8 +198,12 @@ def _banded(
     ends = np.full((2, len(parts)), np.nan)
     if replicates is not None:
         samples = of(replicates)[:, : len(parts)]
-        # a chain learned again may have no class that is never left, and then no timescale
-        ends = np.array(band(samples[np.isfinite(samples).all(axis=1)]))
+        # an empty group has no band; a chain learned again may have no class that is never left, and then
+        # no timescale
+        there = np.isfinite(samples).any(axis=0)
+        whole = np.isfinite(samples[:, there]).all(axis=1)
+        if whole.any():
+            ends[:, there] = band(samples[whole][:, there])
     return [
         row(quantity, source, value, unit, part=part, ci_low=float(low), ci_high=float(high))
         for part, value, low, high in zip(parts, of(found), *ends, strict=False)

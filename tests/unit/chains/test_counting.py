@@ -9,19 +9,10 @@ from bedchain.chains.counting import Counts, count_moves, count_pairs, merge, re
 from bedchain.errors import DataError
 from bedchain.files import map_array
 from bedchain.trajectory import chunks
+from made.frames import hopping_cells
 
 # Shares are sums of at most a few hundred fractions.
 ROUND_OFF = 1e-12
-
-
-def random_cells(seed: int, n_frames: int = 30, n_particles: int = 200, n_cells: int = 12) -> np.ndarray:
-    """Particles that hop to a neighbour, so that some cells fill and others stay almost empty."""
-    rng = np.random.default_rng(seed)
-    cells = np.empty((n_frames, n_particles), np.int32)
-    cells[0] = rng.integers(0, n_cells // 2, n_particles)
-    for frame in range(1, n_frames):
-        cells[frame] = np.clip(cells[frame - 1] + rng.integers(-1, 2, n_particles), 0, n_cells - 1)
-    return cells
 
 
 def naive(cells: np.ndarray, lag: int, moves: int, every: int = 1) -> tuple[Counter, dict, Counter]:
@@ -78,14 +69,14 @@ def test_pairs_by_hand():
 def test_agrees_with_plain_loops(lag, moves):
     count = count_moves if moves == 1 else count_pairs
     for seed in range(3):
-        cells = random_cells(seed)
+        cells = hopping_cells(seed)
         assert_equals_naive(count(cells, 12, lag), naive(cells, lag, moves))
-    cells = random_cells(9, 31)
+    cells = hopping_cells(9, 31)
     assert_equals_naive(count(cells, 12, lag, sliding=False), naive(cells, lag, moves, every=lag))
 
 
 def test_agrees_with_deeptime():
-    cells = random_cells(4)
+    cells = hopping_cells(4)
     for lag in (1, 3):
         model = TransitionCountEstimator(lag, "sliding", n_states=12).fit_fetch(
             [np.ascontiguousarray(p) for p in cells.T]
@@ -95,7 +86,7 @@ def test_agrees_with_deeptime():
 
 @pytest.mark.parametrize("count", [count_moves, count_pairs])
 def test_merged_counts_of_seven_windows_equal_those_of_one(count):
-    cells = random_cells(5, n_frames=60)
+    cells = hopping_cells(5, n_frames=60)
     whole = count(cells, 12, 2)
     edges = [0, 5, 6, 20, 31, 40, 52, 60]
     merged = merge(
@@ -110,7 +101,7 @@ def test_merged_counts_of_seven_windows_equal_those_of_one(count):
 
 @pytest.mark.parametrize("count", [count_moves, count_pairs])
 def test_counts_of_parallel_jobs_come_back_from_files(count, tmp_path):
-    cells = random_cells(11)
+    cells = hopping_cells(11)
     for job, (low, high) in enumerate([(0, 9), (9, 30)]):
         write_counts(tmp_path / f"{job}.npz", count(cells, 12, first=low, last=high))
     merged = merge([read_counts(tmp_path / f"{job}.npz") for job in (0, 1)])
@@ -121,7 +112,7 @@ def test_counts_of_parallel_jobs_come_back_from_files(count, tmp_path):
 
 
 def test_chunks_change_nothing(monkeypatch, tmp_path):
-    cells = random_cells(6)
+    cells = hopping_cells(6)
     np.savez(tmp_path / "cells.npz", other=np.arange(3.0), cells=cells)
     whole = [
         count_moves(cells, 12, 3),
@@ -142,15 +133,8 @@ def test_chunks_change_nothing(monkeypatch, tmp_path):
             assert (one.shares != two.shares).nnz == 0
 
 
-def test_views_of_memory_maps_read_the_right_frames(tmp_path):
-    np.save(tmp_path / "cells.npy", random_cells(7))
-    mapped = np.load(tmp_path / "cells.npy", mmap_mode="r")
-    for view in (mapped, mapped[4:20], mapped[4:20][3:], mapped[:, 5:], mapped[::2], mapped[[3, 1, 2]]):
-        assert (chunks.read_frames(view, 1, 3) == np.asarray(view)[1:3]).all()
-
-
 def test_weights_count_steps_again():
-    cells = random_cells(8)
+    cells = hopping_cells(8)
     weights = np.random.default_rng(1).integers(0, 3, 29)
     found = count_moves(cells, 12, step_weights=weights)
     steps = [count_moves(cells, 12, first=t, last=t + 1) for t in range(29) for _ in range(weights[t])]
@@ -169,7 +153,7 @@ def test_a_cell_a_diameter_keeps_only_what_occurs():
 
 
 def test_bad_input_is_refused():
-    cells = random_cells(1)
+    cells = hopping_cells(1)
     with pytest.raises(DataError, match="hold no step"):
         count_moves(cells, 12, 30)
     with pytest.raises(DataError, match="hold no step"):
