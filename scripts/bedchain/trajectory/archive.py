@@ -66,7 +66,7 @@ def read_provenance(folder: Path) -> dict[str, Any]:
     try:
         found = json.loads((folder / PROVENANCE).read_text(encoding="utf-8"))
         _ = found["solver_keys"], found["start_s"], found["end_s"], found["history_s"], found["files"]
-    except (OSError, ValueError, KeyError) as error:
+    except (OSError, ValueError, KeyError, TypeError) as error:
         raise UserError(
             f"{folder}: no readable archive of a bed ({error!r}); fetch it again, {SIMULATE}"
         ) from error

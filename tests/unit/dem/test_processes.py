@@ -1,6 +1,8 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Child processes: their output in the log, their last words in the error, progress read from their lines."""
 
+from pathlib import Path
+
 import pytest
 
 from bedchain.dem.processes import Progress, last_words, on_ranks, run_deck, run_logged, solver_environment
@@ -30,12 +32,15 @@ def test_a_program_that_is_not_there_is_named(tmp_path):
 
 
 def test_a_child_ends_when_its_reader_fails(tmp_path):
+    numbers = []
+
     def reader(line):
+        numbers.append(line.strip())
         raise KeyboardInterrupt
 
-    # the child would write for ever
     with pytest.raises(KeyboardInterrupt):
-        run_logged(["sh", "-c", "while :; do echo line; sleep 0.1; done"], tmp_path / "log", reader)
+        run_logged(["sh", "-c", "echo $$; exec sleep 600"], tmp_path / "log", reader)
+    assert len(numbers) == 1 and not Path(f"/proc/{numbers[0]}").exists()
 
 
 def test_without_an_error_line_the_last_lines_are_shown(tmp_path):

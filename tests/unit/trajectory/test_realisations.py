@@ -9,7 +9,7 @@ import pytest
 
 from bedchain.errors import UserError
 from bedchain.trajectory.grid import Grid
-from bedchain.trajectory.realisations import open_repeats, open_realisation, part_of
+from bedchain.trajectory.realisations import open_realisation, open_repeats, part_of
 from made.persistent_walk import INTERVAL_S, write
 
 
@@ -17,7 +17,9 @@ from made.persistent_walk import INTERVAL_S, write
 def run(tmp_path):
     """A run of 41 frames of 5 particles."""
     values = np.random.default_rng(1).uniform(0, 0.1, (41, 4, 5))
-    return open_realisation("the run", write(tmp_path / "run", values, 0.1), tmp_path / "run" / "trajectory.json")
+    return open_realisation(
+        "the run", write(tmp_path / "run", values, 0.1), tmp_path / "run" / "trajectory.json"
+    )
 
 
 def test_a_run_that_ends_early_is_cut_and_said(run, caplog):
