@@ -1,11 +1,16 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
+"""Counts of moves and of pairs against plain loops, and their properties."""
+
 from collections import Counter, defaultdict
 
 import numpy as np
 import pytest
 from deeptime.markov import TransitionCountEstimator
+from hypothesis import given
+from hypothesis import strategies as st
+from hypothesis.extra.numpy import arrays
 
-from bedchain.chains.counting import Counts, count_moves, count_pairs, merge, read_counts, write_counts
+from bedchain.chains.counting import Counts, count_moves, count_pairs
 from bedchain.errors import DataError
 from bedchain.files import map_array
 from bedchain.trajectory import chunks
@@ -15,18 +20,21 @@ from made.frames import hopping_cells
 ROUND_OFF = 1e-12
 
 
-def naive(cells: np.ndarray, lag: int, moves: int, every: int = 1) -> tuple[Counter, dict, Counter]:
+def naive(
+    cells: np.ndarray, lag: int, moves: int, weights: list[int] | None = None
+) -> tuple[Counter, dict, Counter]:
     """Counts, sums of shares and occupied steps by plain loops; keys are tuples of cells."""
     counts: Counter = Counter()
     shares: dict = defaultdict(float)
     occupied: Counter = Counter()
-    for start in range(0, len(cells) - moves * lag, every):
+    for start in range(len(cells) - moves * lag):
         now = [tuple(int(cells[start + k * lag, p]) for k in range(moves + 1)) for p in range(cells.shape[1])]
         held = Counter(path[:-1] for path in now)
-        for path in now:
-            counts[path] += 1
-            shares[path] += 1 / held[path[:-1]]
-        occupied.update(held.keys())
+        for _ in range(1 if weights is None else weights[start]):
+            for path in now:
+                counts[path] += 1
+                shares[path] += 1 / held[path[:-1]]
+            occupied.update(held.keys())
     return counts, shares, occupied
 
 
@@ -71,8 +79,39 @@ def test_agrees_with_plain_loops(lag, moves):
     for seed in range(3):
         cells = hopping_cells(seed)
         assert_equals_naive(count(cells, 12, lag), naive(cells, lag, moves))
-    cells = hopping_cells(9, 31)
-    assert_equals_naive(count(cells, 12, lag, sliding=False), naive(cells, lag, moves, every=lag))
+
+
+@st.composite
+def trajectories(draw):
+    """Cells of a few particles in a few frames, a lag that fits twice, and how often each step counts."""
+    lag, frames = draw(st.integers(1, 3)), draw(st.integers(7, 12))
+    cells = draw(arrays(np.int32, (frames, draw(st.integers(1, 5))), elements=st.integers(0, 4)))
+    weights = draw(st.lists(st.integers(0, 3), min_size=frames - lag, max_size=frames - lag))
+    weights[0] += 1
+    return cells, lag, weights
+
+
+@given(trajectories())
+def test_counts_are_those_of_loops_add_up_and_need_no_order_of_particles(given_trajectory):
+    cells, lag, weights = given_trajectory
+    for count, moves in ((count_moves, 1), (count_pairs, 2)):
+        steps = weights[: len(cells) - moves * lag]
+        found = count(cells, 5, lag, step_weights=np.array(steps))
+        assert_equals_naive(found, naive(cells, lag, moves, steps))
+        assert found.moves.sum() == sum(steps) * cells.shape[1] == found.visits.sum()
+        assert found.shares.sum() == pytest.approx(found.occupied.sum(), abs=ROUND_OFF)
+        turned = count(np.ascontiguousarray(cells[:, ::-1]), 5, lag, step_weights=np.array(steps))
+        assert (turned.moves != found.moves).nnz == 0 and (turned.occupied == found.occupied).all()
+
+
+@given(trajectories(), st.integers(1, 3))
+def test_counts_of_ranges_of_steps_add_up(given_trajectory, cut):
+    cells, lag, _ = given_trajectory
+    whole, *parts = (count_moves(cells, 5, lag, first=low, last=high)
+                     for low, high in ((0, None), (0, cut), (cut, None)))  # fmt: skip
+    assert (sum(part.moves for part in parts) != whole.moves).nnz == 0
+    assert (sum(part.occupied for part in parts) == whole.occupied).all()
+    assert sum(part.steps for part in parts) == whole.steps
 
 
 def test_agrees_with_deeptime():
@@ -84,63 +123,18 @@ def test_agrees_with_deeptime():
         assert (model.count_matrix == count_moves(cells, 12, lag).moves.toarray()).all()
 
 
-@pytest.mark.parametrize("count", [count_moves, count_pairs])
-def test_merged_counts_of_seven_windows_equal_those_of_one(count):
-    cells = hopping_cells(5, n_frames=60)
-    whole = count(cells, 12, 2)
-    edges = [0, 5, 6, 20, 31, 40, 52, 60]
-    merged = merge(
-        [count(cells, 12, 2, first=low, last=high) for low, high in zip(edges, edges[1:], strict=False)]
-    )
-    assert (merged.moves != whole.moves).nnz == 0
-    assert abs(merged.shares - whole.shares).max() < ROUND_OFF
-    assert (merged.occupied == whole.occupied).all() and merged.steps == whole.steps
-    if whole.pairs is not None:
-        assert (merged.pairs == whole.pairs).all()
-
-
-@pytest.mark.parametrize("count", [count_moves, count_pairs])
-def test_counts_of_parallel_jobs_come_back_from_files(count, tmp_path):
-    cells = hopping_cells(11)
-    for job, (low, high) in enumerate([(0, 9), (9, 30)]):
-        write_counts(tmp_path / f"{job}.npz", count(cells, 12, first=low, last=high))
-    merged = merge([read_counts(tmp_path / f"{job}.npz") for job in (0, 1)])
-    assert_equals_naive(merged, naive(cells, 1, 1 if count is count_moves else 2))
-    np.savez(tmp_path / "other.npz", moves=np.ones(3))
-    with pytest.raises(DataError, match="holds no counts, 'indices' is missing"):
-        read_counts(tmp_path / "other.npz")
-
-
 def test_chunks_change_nothing(monkeypatch, tmp_path):
     cells = hopping_cells(6)
     np.savez(tmp_path / "cells.npz", other=np.arange(3.0), cells=cells)
-    whole = [
-        count_moves(cells, 12, 3),
-        count_pairs(cells, 12, 3),
-        count_moves(cells[:28], 12, 3, sliding=False),
-    ]
+    whole = [count_moves(cells, 12, 3), count_pairs(cells, 12, 3)]
     monkeypatch.setattr(chunks, "CHUNK_BYTES", 4 * cells[0].nbytes)
     mapped = map_array(tmp_path / "cells.npz", "cells")
     assert isinstance(mapped, np.memmap)
     for array in (cells, mapped, mapped[:]):
-        parts = [
-            count_moves(array, 12, 3),
-            count_pairs(array, 12, 3),
-            count_moves(array[:28], 12, 3, sliding=False),
-        ]
+        parts = [count_moves(array, 12, 3), count_pairs(array, 12, 3)]
         for one, two in zip(whole, parts, strict=True):
             assert (one.moves != two.moves).nnz == 0 and (one.occupied == two.occupied).all()
             assert (one.shares != two.shares).nnz == 0
-
-
-def test_weights_count_steps_again():
-    cells = hopping_cells(8)
-    weights = np.random.default_rng(1).integers(0, 3, 29)
-    found = count_moves(cells, 12, step_weights=weights)
-    steps = [count_moves(cells, 12, first=t, last=t + 1) for t in range(29) for _ in range(weights[t])]
-    again = merge(steps)
-    assert (found.moves != again.moves).nnz == 0 and found.steps == again.steps
-    assert abs(found.shares - again.shares).max() < ROUND_OFF and (found.occupied == again.occupied).all()
 
 
 def test_a_cell_a_diameter_keeps_only_what_occurs():
@@ -158,8 +152,6 @@ def test_bad_input_is_refused():
         count_moves(cells, 12, 30)
     with pytest.raises(DataError, match="hold no step"):
         count_pairs(cells, 12, 15)
-    with pytest.raises(DataError, match="does not divide"):
-        count_moves(cells, 12, 4, sliding=False)
     with pytest.raises(DataError, match="window is empty"):
         count_moves(cells, 12, first=40, last=50)
     with pytest.raises(DataError, match="28 step weights for 29 steps"):
@@ -173,7 +165,3 @@ def test_bad_input_is_refused():
     cells[7, 31] = 12
     with pytest.raises(DataError, match=r"particle 31 .*frame 7 is in cell 12, the grid has cells 0 to 11"):
         count_moves(cells, 12)
-    with pytest.raises(DataError, match="do not add up"):
-        merge([count_moves(cells, 13), count_moves(cells, 14)])
-    with pytest.raises(DataError, match="no counts"):
-        merge([])

@@ -4,7 +4,7 @@ import pytest
 
 from bedchain.chains import dynamic, registry
 from bedchain.chains.chain import Chain
-from bedchain.chains.counting import Counts, count_moves, count_pairs, merge
+from bedchain.chains.counting import count_moves
 from bedchain.chains.estimators import ESTIMATORS
 from bedchain.errors import DataError
 from bedchain.trajectory.frames import Frames
@@ -119,19 +119,6 @@ def test_dynamic_matrix_agrees_with_a_loop_over_pairs():
         expected += np.bincount(path[2:][same], minlength=grid.n_cells) / same.sum()
     found = chain.densities(start, np.ones((1, path.shape[1]), bool), [1])[0, 0]
     assert np.allclose(found, expected, atol=1e-9)
-
-
-def test_merged_parts_make_the_same_dynamic_chain():
-    frames, grid = stirred(9)
-    cells = frames.cells
-
-    def parts(count) -> Counts:
-        return merge([count(cells, grid.n_cells, first=low, last=low + 10) for low in range(0, 60, 10)][:6])
-
-    whole = registry.learn("dynamic", frames, grid)
-    joined = dynamic.from_counts(parts(count_pairs), parts(count_moves), grid, 0.025)
-    for key, array in whole.arrays().items():
-        assert (array == joined.arrays()[key]).all(), key
 
 
 def test_a_pair_entered_only_at_the_end_moves_on_as_its_cell_does():

@@ -1,8 +1,13 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
+"""Estimators of the transition matrix, by hand, against loops, and their properties."""
+
 import numpy as np
 import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+from hypothesis.extra.numpy import arrays
 
-from bedchain.chains.counting import count_moves, merge
+from bedchain.chains.counting import count_moves
 from bedchain.chains.estimators import (
     ESTIMATORS,
     leak,
@@ -23,9 +28,11 @@ def paths(*particles: list[int]) -> np.ndarray:
 
 def uneven_cell():
     """Cell 0 sends on 0.9 of what it holds when that is little (10), 0.1 when it is much (200)."""
-    little = paths(*[[0, 1]] * 9, [0, 0])
-    much = paths(*[[0, 1]] * 20, *[[0, 0]] * 180)
-    return merge([count_moves(little, 2), count_moves(much, 2)])
+    # two steps that do not follow each other; who is not in cell 0 waits in cell 2
+    little = [[0, 1]] * 9 + [[0, 0]] + [[2, 2]] * 190
+    much = [[0, 1]] * 20 + [[0, 0]] * 180
+    cells = paths(*(one + two for one, two in zip(little, much, strict=True)))
+    return count_moves(cells, 3, step_weights=np.array([1, 0, 1]))
 
 
 def test_per_step_and_pooled_differ_where_occupancy_and_motion_are_linked():
@@ -105,3 +112,24 @@ def test_a_never_visited_cell_stays_put_and_shifts_no_number():
 def test_an_unknown_estimator_names_those_that_exist():
     with pytest.raises(DataError, match="choose one of literal, per_step, pooled"):
         transition_matrix(uneven_cell(), "mean")
+
+
+@given(
+    arrays(np.int32, st.tuples(st.integers(2, 8), st.integers(1, 6)), elements=st.integers(0, 5)),
+    st.sampled_from(sorted(ESTIMATORS)),
+)
+def test_rows_sum_to_one_and_particles_have_no_order(cells, estimator):
+    matrix = transition_matrix(count_moves(cells, 6), estimator).toarray()
+    assert matrix.sum(axis=1) == pytest.approx(np.ones(6), abs=ROUND_OFF) and matrix.min() >= 0
+    turned = transition_matrix(count_moves(np.ascontiguousarray(cells[:, ::-1]), 6), estimator).toarray()
+    assert turned == pytest.approx(matrix, abs=ROUND_OFF)
+
+
+@given(arrays(np.int32, (4, 5), elements=st.integers(0, 3)), st.permutations(range(4)))
+def test_pooled_needs_no_order_of_steps(cells, order):
+    # the same steps one after the other in another order, each from a frame of its own
+    def pooled(steps):
+        frames = np.concatenate([cells[[step, (step + 1) % 4]] for step in steps])
+        return transition_matrix(count_moves(frames, 4, step_weights=np.array([1, 0] * 3 + [1])), "pooled")
+
+    assert pooled(order).toarray() == pytest.approx(pooled(range(4)).toarray(), abs=ROUND_OFF)

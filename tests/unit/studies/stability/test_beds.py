@@ -69,15 +69,15 @@ def test_settings_beyond_a_limit_are_refused_and_those_within_are_not(bed, key, 
         loaded(bed, tmp_path)
     assert [problem.key for problem in error.value.problems] == [key]
     assert "take at most" in str(error.value) or "take at least" in str(error.value)
-    assert loaded(replace(bed, **better), tmp_path)
+    loaded(replace(bed, **better), tmp_path)  # raises where it is refused
 
 
 def test_a_layer_whose_lattice_is_higher_than_the_box_is_refused(tmp_path):
     # 17 columns and 51 rows of 1.15 diameters; more would silently not be there
-    assert loaded(Bed(number=17 * 51), tmp_path)
+    assert loaded(Bed(number=17 * 51), tmp_path)["particles"]["number"] == 867
     with pytest.raises(CaseError, match="particles.number.*take at most"):
         loaded(Bed(number=17 * 51 + 1), tmp_path)
 
 
 def test_one_particle_or_few_may_have_any_gas_cell(tmp_path):
-    assert loaded(Bed(number=1, cell=20), tmp_path)
+    assert loaded(Bed(number=1, cell=20), tmp_path)["gas"]["cell_size_m"] == 0.02
