@@ -9,7 +9,7 @@ from made import ROOT
 
 LIBRARY, UNIT = ROOT / "scripts" / "bedchain", ROOT / "tests" / "unit"
 # | `studies/peers/yade.py` | why it has no test file |
-REASON = re.compile(r"^\| `([\w/]+\.py)` \| (.+) \|$", re.MULTILINE)
+REASON = re.compile(r"^\| `([\w/]+\.py)` \| ([^|]+) \|$", re.MULTILINE)
 
 
 def modules() -> set[str]:
@@ -19,7 +19,7 @@ def modules() -> set[str]:
     return {file.relative_to(LIBRARY).as_posix() for file in with_code}
 
 
-def tests_of(module: str) -> Path:
+def file_of(module: str) -> Path:
     """Where the tests of a module are."""
     return UNIT / Path(module).with_name(f"test_{Path(module).name}")
 
@@ -30,15 +30,15 @@ def reasons() -> dict[str, str]:
 
 def test_every_module_has_a_test_file_or_a_reason():
     assert len(modules()) > 100
-    assert not sorted(module for module in modules() - reasons().keys() if not tests_of(module).exists())
+    assert not sorted(module for module in modules() - reasons().keys() if not file_of(module).exists())
 
 
 def test_every_reason_is_needed():
     gone = sorted(reasons().keys() - modules())
-    tested = sorted(module for module in reasons() if tests_of(module).exists())
+    tested = sorted(module for module in reasons() if file_of(module).exists())
     assert reasons() and (gone, tested) == ([], [])
 
 
 def test_every_test_file_has_its_module():
     files = {file for file in UNIT.rglob("test_*.py") if file.name != Path(__file__).name}
-    assert not sorted(str(file.relative_to(UNIT)) for file in files - {*map(tests_of, modules())})
+    assert not sorted(str(file.relative_to(UNIT)) for file in files - {*map(file_of, modules())})
