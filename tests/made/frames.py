@@ -5,7 +5,7 @@ import numpy as np
 
 from bedchain.trajectory.frames import Frames
 from bedchain.trajectory.grid import Grid
-from bedchain.trajectory.realisations import Run
+from bedchain.trajectory.realisations import Realisation
 
 
 def framed(cells: np.ndarray, grid: Grid) -> Frames:
@@ -68,11 +68,11 @@ def kept_velocity(
     return Frames(np.arange(n_frames) * 0.025, x, z, np.zeros(x.shape, np.int32), vx, vz)
 
 
-def walkers(intervals: int, n_particles: int = 200, seed: int = 5) -> Run:
+def walkers(intervals: int, n_particles: int = 200, seed: int = 5) -> Realisation:
     """A realisation of a bed of walkers that keep their velocity for 0.1 s, in a box of 0.1 m."""
     frames = kept_velocity(n_particles, intervals + 1, 0.1, 0.1, 0.2, seed)
     values = np.stack((frames.x_m, frames.z_m, frames.vx_m_s, frames.vz_m_s), axis=1).astype(np.float32)
-    return Run(f"walkers {seed}", values, frames.times_s, 0.1, 0.1)
+    return Realisation(f"walkers {seed}", values, frames.times_s, 0.1, 0.1)
 
 
 def on_grid(frames: Frames, grid: Grid) -> Frames:

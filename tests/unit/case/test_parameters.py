@@ -4,8 +4,6 @@
 import copy
 import math
 import re
-import subprocess
-import sys
 
 import pytest
 
@@ -90,35 +88,6 @@ def test_what_the_solvers_do_not_need_changes_nothing(paper, section, key, value
     assert other[section][key] != value
     other[section][key] = value
     assert solver_parameters(other, load_schema()) == solver_parameters(paper, load_schema())
-
-
-def test_the_command_writes_both_files_and_leaves_equal_ones_alone(tmp_path):
-    command = [
-        sys.executable,
-        "scripts/write_parameters.py",
-        "cases/short/case.yaml",
-        str(tmp_path / "short"),
-    ]
-    subprocess.run(command, cwd=ROOT, check=True)
-    files = [tmp_path / "short" / name for name in ("parameters.lig", "caseParameters")]
-    before = [file.stat().st_mtime_ns for file in files]
-    assert "variable diameter equal 0.001  # [m] particles.diameter_m\n" in files[0].read_text(
-        encoding="utf-8"
-    )
-    assert "diameter 0.001; // [m] particles.diameter_m\n" in files[1].read_text(encoding="utf-8")
-    subprocess.run(command, cwd=ROOT, check=True)
-    assert [file.stat().st_mtime_ns for file in files] == before
-
-
-def test_the_command_refuses_a_bad_case_without_a_trace(tmp_path):
-    bad = tmp_path / "case.yaml"
-    text = (ROOT / "cases" / "short" / "case.yaml").read_text(encoding="utf-8")
-    bad.write_text(re.sub(r"^seed: .*", "seed: 4", text, flags=re.M), encoding="utf-8")
-    command = [sys.executable, "scripts/write_parameters.py", str(bad), str(tmp_path / "out")]
-    done = subprocess.run(command, cwd=ROOT, capture_output=True, text=True, check=False)
-    assert done.returncode == 1
-    assert "seed: 4 is not above 10000" in done.stderr and "Traceback" not in done.stderr
-    assert not (tmp_path / "out").exists()
 
 
 def test_the_drum_s_speed_reaches_the_decks_and_a_bed_in_a_box_has_none():

@@ -1,6 +1,8 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """The Markov test on particles that are Markov, and on particles that are not."""
 
+from functools import partial
+
 import numpy as np
 import pytest
 
@@ -28,7 +30,15 @@ def walkers(turning: float, seed: int):
 def rows_of(frames, name):
     """Rows by quantity, part and time, at a lag of one frame."""
     sides = count_sides(frames, *SPLITS, [1, 5])
-    rows = check_model(name, frames, GRID, sides, [1], "pooled", 10, np.random.default_rng(1))
+    rows = check_model(
+        name,
+        partial(registry.relearner, name, frames, GRID),
+        frames,
+        sides,
+        [1],
+        10,
+        np.random.default_rng(1),
+    )
     return {(row["quantity"], row["part"], row["time_s"]): row for row in rows}
 
 

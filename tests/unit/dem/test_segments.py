@@ -4,7 +4,7 @@
 import pytest
 
 from bedchain.dem import segments
-from bedchain.dem.segments import Run, Segment
+from bedchain.dem.segments import Segment, SegmentedRun
 from bedchain.errors import UserError
 
 PARAMETERS = """# made
@@ -20,7 +20,7 @@ variable dump_suffix string bin  # [-]
 def run(tmp_path):
     """A run of two segments, at frames 0 to 4 and 4 to 6, with all its frames there."""
     (tmp_path / "parameters.lig").write_text(PARAMETERS)
-    run = Run(tmp_path, tmp_path, "a1b2", 2, 0, 600, "settled")
+    run = SegmentedRun(tmp_path, tmp_path, "a1b2", 2, 0, 600, "settled")
     for index, (start, end) in enumerate(((0, 400), (400, 600)), start=1):
         folder = run.state / f"segment_{index:04d}"
         folder.mkdir(parents=True)
@@ -64,7 +64,7 @@ def test_finished_segments_end_at_the_first_gap(run):
 
 def test_a_segment_keeps_the_frames_after_its_start_and_the_first_of_all(run):
     for index, steps in ((1, (0, 400)), (2, (400, 600))):
-        segments.check_frames(run.state / f"segment_{index:04d}", run, steps, 100, "bin")
+        segments.keep_own_frames(run.state / f"segment_{index:04d}", run, steps, 100, "bin")
     names = [sorted(file.name for file in folder.glob("frame_*")) for folder in sorted(run.state.iterdir())]
     assert names == [
         [f"frame_{step}.bin" for step in steps] for steps in ((0, 100, 200, 300, 400), (500, 600))
@@ -76,7 +76,7 @@ def test_a_frame_that_is_not_there_is_named(run, fault):
     frame = run.state / "segment_0001" / "frame_200.bin"
     frame.unlink() if fault == "missing" else frame.write_bytes(b"")
     with pytest.raises(UserError, match="frame_200.bin was not written: see the solver's log"):
-        segments.check_frames(frame.parent, run, (0, 400), 100, "bin")
+        segments.keep_own_frames(frame.parent, run, (0, 400), 100, "bin")
 
 
 def test_the_manifest_lists_each_frame_once_with_its_owner(run):

@@ -6,6 +6,7 @@ import pytest
 
 from bedchain.errors import DataError
 from bedchain.measures.dispersion import dispersion_by_height
+from bedchain.trajectory.frames import Lag
 
 EDGES = np.array([0.0, 0.4, 1.0])
 
@@ -13,7 +14,7 @@ EDGES = np.array([0.0, 0.4, 1.0])
 def test_layers_are_those_of_a_loop():
     rng = np.random.default_rng(1)
     x, z = rng.random((2, 6, 50)) * [[[1.0]], [[1.2]]]
-    layers = dispersion_by_height(x, z, EDGES, 2, 0.05)
+    layers = dispersion_by_height(x, z, EDGES, Lag(2, 0.05))
     for layer in range(2):
         moves = np.array(
             [
@@ -30,11 +31,11 @@ def test_layers_are_those_of_a_loop():
 
 
 def test_a_layer_without_particles_has_no_number():
-    layers = dispersion_by_height(np.zeros((3, 2)), np.full((3, 2), 0.5), EDGES, 1, 0.1)
+    layers = dispersion_by_height(np.zeros((3, 2)), np.full((3, 2), 0.5), EDGES, Lag(1, 0.1))
     assert layers.displacements.tolist() == [0, 4]
     assert np.isnan(layers.drift_m_s[0]).all() and (layers.drift_m_s[1] == 0).all()
 
 
 def test_a_lag_as_long_as_the_frames_is_refused():
     with pytest.raises(DataError, match="3 frames hold no displacement over 3 frames"):
-        dispersion_by_height(np.zeros((3, 2)), np.zeros((3, 2)), EDGES, 3, 0.1)
+        dispersion_by_height(np.zeros((3, 2)), np.zeros((3, 2)), EDGES, Lag(3, 0.1))

@@ -4,6 +4,7 @@
 import numpy as np
 import pytest
 
+from bedchain.measures.mixing import Splits
 from bedchain.studies.scores.held_out import hold_out
 from bedchain.trajectory.grid import Grid
 from made.frames import walkers
@@ -14,7 +15,7 @@ GRID = Grid(0.1, 0.1, 5, 10)
 def held(*seeds):
     """Runs of 2 s, of which the last second is held out, with a start every 10 frames."""
     runs = [walkers(80, seed=seed) for seed in seeds]
-    return hold_out(runs, GRID, (1.0, 2.0), 10, (0.05, 0.05), 0.02, [0.1, 0.8])
+    return hold_out(runs, GRID, (1.0, 2.0), 10, Splits(0.05, 0.05), 0.02, [0.1, 0.8])
 
 
 def test_starts_of_all_runs_with_their_curves_and_batches():

@@ -4,6 +4,7 @@
 import numpy as np
 import pytest
 
+from bedchain.measures.mixing import Splits
 from bedchain.studies.scores import rows
 from bedchain.studies.scores.held_out import hold_out
 from bedchain.studies.scores.tested_chain import dem_statistics
@@ -15,7 +16,7 @@ from made.frames import walkers
 def held():
     """Two realisations with a second held out."""
     runs = [walkers(80, seed=seed) for seed in (1, 2)]
-    return hold_out(runs, Grid(0.1, 0.1, 5, 5), (1.0, 2.0), 10, (0.05, 0.05), 0.02, [0.1, 0.3])
+    return hold_out(runs, Grid(0.1, 0.1, 5, 5), (1.0, 2.0), 10, Splits(0.05, 0.05), 0.02, [0.1, 0.3])
 
 
 def by(table, *keys):

@@ -4,23 +4,17 @@
 import numpy as np
 import pytest
 
+from bedchain.measures.mixing import Splits
+from bedchain.studies.scan import Task
 from bedchain.studies.scores.candidates import Candidate
-from bedchain.studies.scores.marked_starts import Start
-from bedchain.studies.scores.selection import Task, at_frames, observed_curves, timed, validated
+from bedchain.studies.scores.selection import validated
 from bedchain.trajectory.grid import Grid
-from bedchain.trajectory.realisations import Run
+from bedchain.trajectory.realisations import Realisation
 from made.frames import walkers
 
 
-def test_curves_between_steps_are_straight():
-    curves = np.array([[1.0, 1.0], [0.5, 0.8], [0.4, 0.7]])
-    found = at_frames(curves, 2, 3)
-    assert found[:, 0] == pytest.approx([1, 0.75, 0.5, 0.45])
-    assert found.shape == (4, 2)
-
-
 def task(grid: Grid) -> Task:
-    return Task(grid, (0.05, 0.05), "pooled", 5, 20)
+    return Task(grid, Splits(0.05, 0.05), "pooled", 5, 20)
 
 
 def test_a_setting_that_the_window_is_too_short_for_is_a_problem_and_no_crash():
@@ -36,24 +30,10 @@ def test_a_setting_that_the_window_is_too_short_for_is_a_problem_and_no_crash():
 def test_a_still_bed_is_followed_without_error_by_its_chain():
     values = np.tile(walkers(1).values[:1], (61, 1, 1))
     values[:, 2:] = 0
-    run = Run("still", values, np.arange(61) * 0.025, 0.1, 0.1)
+    run = Realisation("still", values, np.arange(61) * 0.025, 0.1, 0.1)
     # no cell is cut by the lines at 0.05 m
     result = validated(Candidate("static", 4, 4, 2), run, slice(0, 61), task(Grid(0.1, 0.1, 4, 4)))
     assert result["problem"] == "" and result["starts"] > 0
     assert (result["validation_rms"], result["ci_low"], result["ci_high"]) == pytest.approx(
         (0, 0, 0), abs=1e-12
     )
-
-
-def test_the_observed_curves_are_those_of_the_positions():
-    run, start = walkers(20), Start(0, 0, 5, 15)
-    curves = observed_curves(run, start, (0.05, 0.05))
-    left = run.values[5, 0] < 0.05
-    assert curves.shape == (11, 4)
-    assert curves[7, 0] == pytest.approx((run.values[12, 0][left] < 0.05).mean())
-
-
-def test_a_kernel_is_timed_and_gives_what_it_makes():
-    calls = []
-    made, seconds = timed(lambda: calls.append(1) or "made")
-    assert made == "made" and len(calls) == 4 and 0 <= seconds < 1

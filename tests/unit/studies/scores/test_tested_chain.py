@@ -5,6 +5,7 @@ import numpy as np
 import pytest
 
 from bedchain.chains import registry
+from bedchain.measures.mixing import Splits
 from bedchain.studies.scores.held_out import hold_out
 from bedchain.studies.scores.tested_chain import batch_shares, dem_statistics, lagrangian_of
 from bedchain.trajectory.grid import Grid
@@ -29,7 +30,7 @@ def test_the_batch_between_two_steps_is_on_the_straight_line():
 
 def test_displacements_of_the_dem_and_of_a_chain_at_the_same_times():
     run, fine = walkers(120, n_particles=1000), Grid(0.1, 0.1, 20, 20)
-    held = hold_out([run], GRID, (1.5, 3.0), 100, (0.05, 0.05), 0.02, [0.1])
+    held = hold_out([run], GRID, (1.5, 3.0), 100, Splits(0.05, 0.05), 0.02, [0.1])
     chain = registry.learn("static", run.frames(fine, slice(0, 61)), fine)
     model, dem = lagrangian_of(chain, held, 0, 1, np.random.default_rng(1))
     assert (model.times_s == dem.times_s).all() and dem.times_s[0] == 0
