@@ -10,7 +10,8 @@ import pytest
 from bedchain.errors import UserError
 from bedchain.trajectory.grid import Grid
 from bedchain.trajectory.realisations import open_realisation, open_repeats, part_of
-from made.persistent_walk import INTERVAL_S, write
+from made.frames import INTERVAL_S
+from made.persistent_walk import write
 
 
 @pytest.fixture

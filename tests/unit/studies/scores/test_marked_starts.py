@@ -6,7 +6,7 @@ import pytest
 
 from bedchain.errors import UserError
 from bedchain.studies.scores.marked_starts import split, starts_in
-from made.persistent_walk import INTERVAL_S
+from made.frames import INTERVAL_S
 
 
 def test_paper_windows_are_those_of_the_protocol():
