@@ -1,10 +1,10 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-# The whole pipeline of one case, in its order: particles and gas, cells, chains, comparison, figures.
+# The pipeline of a case, in order: particles and gas, cells, chains, comparison, figures.
 #   snakemake --cores 2                        the case `short`, simulated, and `paper`, from its archive
 #   snakemake --cores 2 --config case=mueller  one case of cases/
 #   ... --config reference=simulate            not from the archive cases/<case>/reference/, but by the solvers
 #   ... --config preset=fast                   chains of a preset of cases/presets.yaml, into results/<case>-fast
-# A rule gets only the keys of the case that it needs: what a changed key does not touch does not run again.
+# A rule gets only the keys of the case that it needs, so a changed key reruns only the rules that use it.
 import logging
 import sys
 from pathlib import Path
@@ -21,16 +21,16 @@ PRESET = preset_name(config)
 CASE = case_or_exit(NAME, PRESET)
 REFERENCE = reference_or_exit(config.get("reference"), NAME, CASE)
 WITH_PAPER = "case" not in config and Path("cases/paper/reference").exists()
-MADE = f"{NAME}-{PRESET}" if PRESET else NAME
-RESULTS = f"results/{MADE}"
-FIGURES = f"results/{MADE}/figures"
-LOGS = f"logs/{MADE}"
-BENCHMARKS = f"benchmarks/{MADE}"
+FOLDER = f"{NAME}-{PRESET}" if PRESET else NAME
+RESULTS = f"results/{FOLDER}"
+FIGURES = f"results/{FOLDER}/figures"
+LOGS = f"logs/{FOLDER}"
+BENCHMARKS = f"benchmarks/{FOLDER}"
 MODELS = CASE["chain"]["models"]
 REPEATS = range(1, CASE["comparison"]["repeats"] + 1)
 FORMS = {form: f".{form}" for form in ["png", "pdf", "csv"]}
 SOLVER = "results/bin/bedFoam"
-# the bed that all is made of, simulated or out of its archive: one for all presets
+# the bed behind the results, simulated or from its archive: the same for all presets
 BED = f"results/{NAME}"
 RUN = {"dem": f"{BED}/dem.json", "bed_series": f"{BED}/bed_series.csv"}
 TRAJECTORY = {"trajectory": f"{BED}/trajectory.npy", "metadata": f"{BED}/trajectory.json"}

@@ -15,17 +15,16 @@ from bedchain.chains.markov_chain import MarkovChain
 from bedchain.chains.passage import top_row
 from bedchain.chains.registry import ModelSettings
 from bedchain.comparison.diagnostics import (
-    Row,
     arrival_row,
     dispersion_rows,
     estimator_rows,
     lacey_rows,
-    row,
     table,
     time_rows,
 )
 from bedchain.comparison.forecasts import count_sides
 from bedchain.comparison.markov_test import check_model, counted_rows, doubled_lags
+from bedchain.comparison.metrics import Metric, metric
 from bedchain.files import write_csv
 from bedchain.measures.batch import total_variation
 from bedchain.measures.mixing import Splits, marked_histogram, sides
@@ -63,7 +62,7 @@ def diagnose_chains(
     transitions : list of Path
         ``transitions_<model>.npz`` of each model.
     diagnostics : Path
-        Table to make; its rows are those of `bedchain.diagnosis` and `bedchain.markov_check`.
+        Table to make; its rows are those of `comparison.diagnostics` and `comparison.markov_test`.
     learning, comparison : Window
     splits : Splits
     settings : ModelSettings
@@ -100,7 +99,7 @@ def diagnose_chains(
         if name not in PAPER_MODELS:
             distance = total_variation(chain.long_run_density(before), density)
             rows.append(
-                row("long_run_total_variation", name, distance, lag_s=chain.lag_s, part=settings.estimator)
+                metric("long_run_total_variation", name, distance, lag_s=chain.lag_s, part=settings.estimator)
             )
         if name in with_matrix:
             matrix_chain = with_matrix[name]
@@ -116,11 +115,11 @@ def diagnose_chains(
     write_csv(table(rows), diagnostics)
     for one in rows:
         if one["quantity"] in REPORTED and one["lag_s"] == lag * frames.interval_s:
-            what = f"{one['source']} {one['part']} {one['quantity']}"
+            what = f"{one['source']} {one.get('part', '')} {one['quantity']}"
             LOG.info("%s: %.4g %s", what, one["value"], one["unit"])
 
 
-def path_rows(source: str, frames: Frames, grid: Grid, top: int, lags: Sequence[int]) -> list[Row]:
+def path_rows(source: str, frames: Frames, grid: Grid, top: int, lags: Sequence[int]) -> list[Metric]:
     """Arrivals at the top and dispersion coefficients of particles followed from frame to frame."""
     rows = [arrival_row(source, frames, grid, top)]
     return rows + dispersion_rows(source, frames, grid, lags[::DISPERSION_STRIDE])
@@ -135,7 +134,7 @@ def in_cells(times_s: np.ndarray, cells: np.ndarray, grid: Grid) -> Frames:
 def index_rows(
     chains: dict[str, Chain], start: Frames, window: Frames, splits: Splits, lag: int,
     random: Iterator[np.random.Generator],
-) -> list[Row]:  # fmt: skip
+) -> list[Metric]:  # fmt: skip
     """Lacey's index over the comparison window, by the DEM and by as many particles of each chain.
 
     Parameters

@@ -7,7 +7,7 @@ CELLS = f"{RESULTS}/cells.npz"
 CHAIN_FILES = {"best": "scores_best"}
 
 # A row is a rule, named as its script. `name` is its figure without .png, .pdf, .csv, with wildcards where one rule
-# draws several; `wildcards` says what they may be; each name in `input` and `params` is one that the script asks for.
+# draws several; `wildcards` says what they may be; a script takes what it is given by name, wildcards too.
 FIGURE_RULES = {
     "plot_cells": {
         "name": "fig1_cells",
@@ -35,7 +35,6 @@ FIGURE_RULES = {
         },
         "params": {
             **pick(CASE, "comparison.start_s", "figures.batch_height_m"),
-            "model": "{model}",
             "colour_map": CASE["figures"]["distribution_colour_map"],
         },
     },
@@ -47,7 +46,7 @@ FIGURE_RULES = {
             "metrics": f"{RESULTS}/metrics.csv",
             "chains": [f"{RESULTS}/chain_{model}.npz" for model in MODELS],
         },
-        "params": {**pick(CASE, "chain.models"), "direction": "{direction}", "colours": COLOURS},
+        "params": {**pick(CASE, "chain.models"), "colours": COLOURS},
     },
     "plot_snapshot": {
         "name": "snapshot",

@@ -158,8 +158,8 @@ def test_a_preset_makes_chains_of_its_own_from_the_bed_that_is_there(finished, c
 )
 def test_an_edited_source_runs_its_rule_and_what_follows(finished, file, rule):
     with edited(finished / file, (finished / file).read_text(encoding="utf-8") + "\n"):
-        made = plan(finished)
-    assert set(made.jobs) == made.from_rules(rule)
+        dry_run = plan(finished)
+    assert set(dry_run.jobs) == dry_run.from_rules(rule)
 
 
 @pytest.mark.parametrize(
@@ -170,8 +170,8 @@ def test_an_edited_module_runs_the_rules_whose_scripts_import_it_and_what_follow
     importers = {rule for rule in ALL - STABLE if file in modules_behind(finished / "scripts" / f"{rule}.py")}
     assert importers
     with edited(file, file.read_text(encoding="utf-8") + "\n"):
-        made = plan(finished)
-    assert set(made.jobs) == made.from_rules(*importers)
+        dry_run = plan(finished)
+    assert set(dry_run.jobs) == dry_run.from_rules(*importers)
 
 
 BAD_VALUES = [

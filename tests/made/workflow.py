@@ -116,12 +116,14 @@ def opened(folder: Path, words: dict[str, Any]) -> Iterator[Any]:
 
 def planned(dag: Any) -> Plan:
     """Jobs of a DAG that ran dry."""
-    made = Plan(outputs=[str(file) for job in dag.jobs for file in job.output])
-    made.jobs.update(job.rule.name for job in dag.needrun_jobs(exclude_finished=False) if not job.rule.norun)
+    dry_run = Plan(outputs=[str(file) for job in dag.jobs for file in job.output])
+    dry_run.jobs.update(
+        job.rule.name for job in dag.needrun_jobs(exclude_finished=False) if not job.rule.norun
+    )
     for job in dag.jobs:
         after = {other.rule.name for other in dag.depending[job] if not other.rule.norun}
-        made.after.setdefault(job.rule.name, set()).update(after)
-    return made
+        dry_run.after.setdefault(job.rule.name, set()).update(after)
+    return dry_run
 
 
 def linked(folder: Path, *without: str) -> Path:

@@ -20,7 +20,6 @@ SIGMAS = 6.0
 MIXING_COLUMNS = ["time_s", "source", "direction", "group", "fraction_remaining_1"]
 METRICS_COLUMNS = ["quantity", "source", "value", "unit", "ci_low", "ci_high"]
 TIMING_COLUMNS = ["stage", "wall_s", "cpu_s", "peak_rss_mb", "work", "work_unit"]
-EXPECTED_COLUMNS = ["quantity", "source", "value", "tolerance", "unit", "reason"]
 GROUPS = {"left": "radial", "right": "radial", "low": "axial", "up": "axial"}
 
 

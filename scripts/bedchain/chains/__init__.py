@@ -1,2 +1,2 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Transition counts, matrices and the chains made of them."""
+"""Transition counts, transition matrices and the chains learned from them."""

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""The interface of every chain."""
+"""Interface that every chain has."""
 
 from collections.abc import Iterator, Sequence
 from typing import Any, Protocol
@@ -12,18 +12,18 @@ from bedchain.trajectory.grid import Grid
 
 
 class Chain(Protocol):
-    """What every model offers once it is learned.
+    """A learned model.
 
     Attributes
     ----------
     name : str
         Name of the model.
     grid : Grid
-        Cells in which densities and paths are given.
+        Cells of the densities and paths.
     lag_s : float
         Time between two steps [s].
     report : dict of str to float
-        What learning found, by ``<quantity>_<unit>``, for metrics.csv.
+        Numbers about the learning, by ``<quantity>_<unit>``, for metrics.csv.
     """
 
     @property
@@ -45,7 +45,7 @@ class Chain(Protocol):
     ) -> NDArray[np.float64]:
         """Share of each group of `mixing.GROUPS`, marked in the last frame of ``start``, still on its side.
 
-        Expected values, or with an ``rng`` one Monte Carlo of every particle; (steps + 1, 4), 1 at step 0.
+        Expected values, or with an ``rng`` a Monte Carlo run of every particle; (steps + 1, 4), 1 at step 0.
         """
         ...
 
@@ -58,7 +58,7 @@ class Chain(Protocol):
     ) -> NDArray[np.float64] | NDArray[np.int64]:
         """Particles of each marked group in each cell at rising steps, (n_steps, n_groups, n_cells).
 
-        Expected numbers, or with an ``rng`` the int64 counts of one Monte Carlo of every particle.
+        Expected numbers, or with an ``rng`` the int64 counts of a Monte Carlo run of every particle.
         """
         ...
 
@@ -71,5 +71,5 @@ class Chain(Protocol):
         ...
 
     def arrays(self) -> dict[str, NDArray[Any]]:
-        """All that `load` needs, in plain arrays."""
+        """The chain as plain arrays, for `registry.load`."""
         ...

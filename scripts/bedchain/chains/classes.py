@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Communicating classes of a transition matrix, and how closed ones are opened."""
+"""Communicating classes of a transition matrix, and the opening of closed ones."""
 
 import numpy as np
 from numpy.typing import NDArray
@@ -17,7 +17,7 @@ def classes_of(matrix: sparse.csr_array) -> tuple[NDArray[np.int64], NDArray[np.
     label : (n_states,) int64 array
         Class of each state.
     closed : (n_classes,) bool array
-        Whether a class is never left once entered.
+        True for classes that are never left.
     """
     n_classes, label = csgraph.connected_components(matrix, directed=True, connection="strong")
     rows = np.repeat(np.arange(matrix.shape[0]), np.diff(matrix.indptr))
@@ -37,7 +37,7 @@ def closed_classes(matrix: sparse.csr_array) -> list[NDArray[np.int64]]:
 
 
 def traps(matrix: sparse.csr_array, visits: NDArray[np.int64]) -> NDArray[np.int64]:
-    """Number of the closed class of each state that is in another than the main one, else -1; (n_states,).
+    """Closed class of each state, -1 for open classes and the main class; (n_states,).
 
     The main class is the communicating class with the most visits, closed or not.
     """
@@ -47,17 +47,17 @@ def traps(matrix: sparse.csr_array, visits: NDArray[np.int64]) -> NDArray[np.int
 
 
 def open_classes(matrix: sparse.csr_array, counts: Counts) -> tuple[sparse.csr_array, NDArray[np.int64]]:
-    """Open classes that the frames happen to leave closed, such as a cell entered only in the last frame.
+    """Matrix without closed classes that only the end of the window closes, as by a move in its last frame.
 
-    From every closed class other than the main one (`traps`) that particles were seen to enter they return
-    as they came: the moves in, reversed, are added to the counts of its rows. Without this a particle that
-    enters such a class never comes back, and the chain's long-run density collapses onto it. A class that
-    nothing entered (never visited, or apart from the start) is left as it is.
+    To the counts of every closed class that particles entered, the main one excepted (`traps`), the moves
+    into it are added in reverse: particles return the way they came. Otherwise a particle that enters such
+    a class never returns, and the long-run density of the chain collapses onto it. A class that no particle
+    entered (never visited, or separate from the start) is not changed.
 
     Returns
     -------
     matrix : csr_array
-        Rows sum to what they summed to before.
+        Its row sums are those of the given matrix.
     returned : int64 array
         Rows that were changed, rising.
     """
@@ -77,5 +77,5 @@ def open_classes(matrix: sparse.csr_array, counts: Counts) -> tuple[sparse.csr_a
         kept = np.where(returning > 0, counts.visits / total, 1.0)
         matrix = sparse.csr_array(sparse.diags_array(kept) @ matrix + sparse.diags_array(1.0 / total) @ back)
         matrix.eliminate_zeros()
-        # No row comes here twice: it now leads to all that led to it.
+        # Each row is changed once at most: it now leads to all states that led to it.
         changed |= returning > 0

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Moves kept step by step, so that counts of any choice of steps take milliseconds (for error bars)."""
+"""Transition counts of each step apart: counts of any selection of steps in milliseconds, for error bars."""
 
 from dataclasses import dataclass
 
@@ -38,7 +38,7 @@ class StepCounts:
     lag: int
 
     def weighted(self, weights: NDArray[np.int64]) -> Counts:
-        """Counts with each step taken so many times, as `counting.count_moves` with ``step_weights``.
+        """Counts of weighted steps, as `counting.count_moves` with ``step_weights``.
 
         Parameters
         ----------
@@ -48,20 +48,20 @@ class StepCounts:
         Returns
         -------
         Counts
-            Moves that the chosen steps do not hold are left out.
+            Without the moves that occur in no chosen step.
         """
         n_cells = self.indptr.size - 1
         total = weights @ self.moves
-        seen = total > 0
-        before = np.concatenate(([0], np.cumsum(seen)))
-        index = (self.indices[seen], before[self.indptr].astype(np.int32))
-        moves = sparse.csr_array((total[seen], *index), shape=(n_cells, n_cells))
-        shares = sparse.csr_array(((weights @ self.shares)[seen], *index), shape=(n_cells, n_cells))
+        counted = total > 0
+        before = np.concatenate(([0], np.cumsum(counted)))
+        index = (self.indices[counted], before[self.indptr].astype(np.int32))
+        moves = sparse.csr_array((total[counted], *index), shape=(n_cells, n_cells))
+        shares = sparse.csr_array(((weights @ self.shares)[counted], *index), shape=(n_cells, n_cells))
         return Counts(moves, shares, weights @ self.occupied, int(weights.sum()), self.lag)
 
 
 def count_steps(cells: NDArray[np.int32], n_cells: int, lag: int = 1) -> StepCounts:
-    """Count the moves of every step apart (sliding); needs about 16 bytes a distinct move and step.
+    """Count the moves of every step apart; takes about 16 bytes for each distinct move of a step.
 
     Parameters
     ----------
@@ -77,22 +77,23 @@ def count_steps(cells: NDArray[np.int32], n_cells: int, lag: int = 1) -> StepCou
     StepCounts
         Of ``n_frames - lag`` steps.
     """
-    n_steps = max(len(cells) - lag, 1)  # too few frames are refused by count_moves
+    n_steps = max(len(cells) - lag, 1)  # count_moves refuses too few frames
     steps = [count_moves(cells, n_cells, lag, first=step, last=step + 1) for step in range(n_steps)]
     keys = [_keys(step.moves) for step in steps]
-    union = np.unique(np.concatenate(keys))
-    columns = np.concatenate([np.searchsorted(union, part) for part in keys]).astype(np.int32)
+    entries = np.unique(np.concatenate(keys))
+    columns = np.concatenate([np.searchsorted(entries, part) for part in keys]).astype(np.int32)
     ends = np.concatenate(([0], np.cumsum([part.size for part in keys])))
     moves, shares = (
         sparse.csr_array(
             (np.concatenate([getattr(step, name).data for step in steps]), columns, ends),
-            shape=(n_steps, union.size),
+            shape=(n_steps, entries.size),
         )
         for name in ("moves", "shares")
     )
-    rows = np.concatenate(([0], np.cumsum(np.bincount(union // n_cells, minlength=n_cells))))
+    indptr = np.concatenate(([0], np.cumsum(np.bincount(entries // n_cells, minlength=n_cells))))
     occupied = sparse.csr_array(np.stack([step.occupied for step in steps]))
-    return StepCounts(moves, shares, occupied, (union % n_cells).astype(np.int32), rows.astype(np.int32), lag)
+    indices = (entries % n_cells).astype(np.int32)
+    return StepCounts(moves, shares, occupied, indices, indptr.astype(np.int32), lag)
 
 
 def _keys(moves: sparse.csr_array) -> NDArray[np.int64]:

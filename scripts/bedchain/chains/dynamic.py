@@ -1,9 +1,9 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""The dynamic chain: the next cell depends on this one and the one before (Zhuang et al. 2015, Eq. 2).
+"""The dynamic chain: the next cell depends on the present and the previous cell (Zhuang et al. 2015, Eq. 2).
 
-It runs as a chain of first order on pairs of cells. The states are the pairs that were seen to go on, by
-rising (before, now), and after them one state per cell for particles of unknown past, which move as in the
-static chain. A move into a pair that was never seen to go on leads to the latter.
+It is a chain of first order on pairs of cells. Its states are the pairs from which moves were counted, by
+rising (previous, present) cell, followed by one state for each cell: particles of unknown past, which move as
+in the static chain. A move into a pair from which no move was counted leads to the state of its cell.
 """
 
 import numpy as np
@@ -12,7 +12,7 @@ from scipy import sparse
 
 from bedchain.chains.classes import traps
 from bedchain.chains.counting import Counts, count_moves, count_pairs
-from bedchain.chains.estimators import estimated_rows, leak, transition_matrix
+from bedchain.chains.estimators import ROUND_OFF, estimated_rows, leak, transition_matrix
 from bedchain.chains.markov_chain import MarkovChain
 from bedchain.errors import DataError
 from bedchain.trajectory.frames import Frames
@@ -54,16 +54,16 @@ def from_counts(
     Returns
     -------
     MarkovChain
-        Its report holds the share of moves that fall back on the static chain, what leaks, and the pairs
-        opened.
+        Its report holds the share of moves that fall back on the static chain, the leak, and the number of
+        pairs opened.
 
     Raises
     ------
     DataError
-        The first counts are not of pairs.
+        ``double`` are not counts of pairs.
     """
     if double.pairs is None:
-        raise DataError("counts of single cells given where those of pairs belong: count_pairs makes them")
+        raise DataError("counts of single cells given, counts of pairs expected: count_pairs makes them")
     n_cells = grid.n_cells
     now = double.pairs[:, 1].astype(np.int32)
     keys = double.pairs @ np.array([n_cells, 1])
@@ -87,9 +87,9 @@ def from_counts(
 
 
 def _stays(rows: sparse.csr_array, now: NDArray[np.int32]) -> sparse.csr_array:
-    """Rows with what is missing from 1 put on staying in the present cell."""
+    """Rows filled up to 1 by the probability of staying in the present cell."""
     missing = 1.0 - np.asarray(rows.sum(axis=1)).ravel()
-    lost = np.flatnonzero(missing > 1e-11)
+    lost = np.flatnonzero(missing > ROUND_OFF)
     if lost.size == 0:
         return rows
     stay = sparse.csr_array((missing[lost], (lost, now[lost])), shape=rows.shape)
@@ -99,18 +99,21 @@ def _stays(rows: sparse.csr_array, now: NDArray[np.int32]) -> sparse.csr_array:
 def _on_states(
     both: sparse.csr_array, cell_of_state: NDArray[np.int32], keys: NDArray[np.int64], n_cells: int
 ) -> tuple[sparse.csr_array, NDArray[np.bool_]]:
-    """Columns turned from cells k into states (now, k); True where the pair is unknown: past dropped."""
+    """Matrix with states (present, k) in place of cells k as columns, and for each entry if it falls back.
+
+    An entry falls back on the state of cell k where the pair (present, k) is no state.
+    """
     lengths = np.diff(both.indptr)
     columns = np.empty(both.nnz, np.int32)
     fell_back = np.empty(both.nnz, bool)
-    # In blocks of rows: the int64 keys of all entries at once would be the largest array of all.
+    # In blocks of rows: the int64 keys of all entries together would be the largest array.
     for low in range(0, both.shape[0], 65536):
         high = min(low + 65536, both.shape[0])
         part = slice(int(both.indptr[low]), int(both.indptr[high]))
-        wanted = np.repeat(cell_of_state[low:high].astype(np.int64), lengths[low:high]) * n_cells
-        wanted += both.indices[part]
-        place = np.minimum(np.searchsorted(keys, wanted), keys.size - 1)
-        known = keys[place] == wanted
+        pair = np.repeat(cell_of_state[low:high].astype(np.int64), lengths[low:high]) * n_cells
+        pair += both.indices[part]
+        place = np.minimum(np.searchsorted(keys, pair), keys.size - 1)
+        known = keys[place] == pair
         columns[part] = np.where(known, place, keys.size + both.indices[part])
         fell_back[part] = ~known
     data = both.data / np.repeat(np.asarray(both.sum(axis=1)).ravel(), lengths)
@@ -122,12 +125,13 @@ def _on_states(
 def _open_pairs(
     matrix: sparse.csr_array, cell_of_state: NDArray[np.int32], visits: NDArray[np.int64]
 ) -> tuple[sparse.csr_array, NDArray[np.int64]]:
-    """Give pairs in a trap (`classes.traps`) that other pairs lead into the static row of their cell.
+    """Matrix in which pairs of entered traps (`classes.traps`) have the static row of their cell.
 
     Returns
     -------
-    matrix, opened
-        The matrix and the pairs changed, rising.
+    matrix : csr_array
+    opened : int64 array
+        Pairs that were changed, rising.
     """
     n_pairs = visits.size
     padded = np.concatenate((visits, np.zeros(matrix.shape[0] - n_pairs, np.int64)))

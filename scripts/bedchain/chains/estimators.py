@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""From counted moves to a row-stochastic matrix, with a rule for every case that the counts leave open."""
+"""Estimators of a row-stochastic matrix from counts, with rules for what the counts leave undetermined."""
 
 from collections.abc import Callable
 from dataclasses import dataclass
@@ -12,18 +12,20 @@ from bedchain.chains.classes import classes_of, open_classes
 from bedchain.chains.counting import Counts
 from bedchain.errors import DataError
 
+# Sums of shares differ from whole numbers by the round-off of the counted steps only.
+ROUND_OFF = 1e-11
+
 
 @dataclass(frozen=True)
 class Openings:
-    """What the rules for open cases did to a matrix.
+    """Rows to which the rules for undetermined cases applied.
 
     Parameters
     ----------
     never_left : (n,) int64 array
-        Rows without counts that stay put, ``P[i, i] = 1`` (never visited, or never left with nowhere to
-        return).
+        Rows without counts and without a way back, ``P[i, i] = 1``.
     returned : (n,) int64 array
-        Rows of closed classes that were opened by sending particles back the way they came in.
+        Rows of closed classes that were opened (`classes.open_classes`).
     closed_classes : int
         Closed classes of visited cells that remain, the main one included [1].
     """
@@ -58,7 +60,7 @@ def transition_matrix(
 def transition_matrix_with_openings(
     counts: Counts, estimator: str = "pooled", open_closed: bool | None = None
 ) -> tuple[sparse.csr_array, Openings]:
-    """`transition_matrix`, and what the rules for open cases did to it."""
+    """`transition_matrix`, and the rows to which the rules for undetermined cases applied."""
     matrix = sparse.csr_array(estimated_rows(counts, estimator))
     missing = 1.0 - matrix.sum(axis=1)
     missing[np.abs(missing) < ROUND_OFF] = 0.0
@@ -70,20 +72,16 @@ def transition_matrix_with_openings(
     matrix = _normalised(matrix)
     unvisited = np.flatnonzero(counts.visits == 0)
     never_left = np.setdiff1d(unvisited, returned)
-    seen = (counts.visits > 0) | (np.asarray(counts.moves.sum(axis=0)).ravel() > 0)
+    counted = (counts.visits > 0) | (np.asarray(counts.moves.sum(axis=0)).ravel() > 0)
     label, closed = classes_of(matrix)
-    remaining = np.unique(label[closed[label] & seen])
+    remaining = np.unique(label[closed[label] & counted])
     return matrix, Openings(never_left, returned, remaining.size)
-
-
-# Row sums of shares differ from whole numbers by round-off of the counted steps only.
-ROUND_OFF = 1e-11
 
 
 def literal(counts: Counts) -> sparse.csr_array:
     """Mean over all steps of N_ij / N_i, with 0 in steps in which i was empty: Eq. 1 as printed.
 
-    Rows sum to the share of the steps in which the cell was occupied: the rest leaks.
+    Rows sum to the share of the steps in which the cell was occupied: the remainder leaks.
     """
     return sparse.csr_array(counts.shares / counts.steps)
 
@@ -96,7 +94,7 @@ def per_step(counts: Counts) -> sparse.csr_array:
 def pooled(counts: Counts) -> sparse.csr_array:
     """Sum of N_ij over sum of N_i, the maximum-likelihood estimate; rows of cells never left are empty.
 
-    Keeps the mean density of the frames stationary up to the first and the last frame.
+    The mean density of the frames is stationary, but for the first and the last frame.
     """
     return sparse.csr_array(_rows_divided(counts.moves, counts.visits))
 
@@ -109,12 +107,12 @@ ESTIMATORS: dict[str, Callable[[Counts], sparse.csr_array]] = {
 
 
 def estimated_rows(counts: Counts, estimator: str) -> sparse.csr_array:
-    """Rows as an estimator gives them, before any rule for missing mass.
+    """Rows of an estimator, before the rules for missing mass.
 
     Raises
     ------
     DataError
-        The estimator is not one of `ESTIMATORS`.
+        The estimator is not in `ESTIMATORS`.
     """
     if estimator not in ESTIMATORS:
         raise DataError(f"estimator {estimator!r} is unknown: choose one of {', '.join(ESTIMATORS)}")
@@ -134,7 +132,7 @@ def leak(counts: Counts, density: NDArray[np.float64] | None = None) -> float:
     Returns
     -------
     float
-        Missing mass per step [1].
+        [1].
     """
     weights = visited_density(counts) if density is None else density
     return float(weights @ (1.0 - counts.occupied / counts.steps))
@@ -152,12 +150,16 @@ def _rows_divided(matrix: sparse.csr_array, divisor: NDArray[np.int64]) -> spars
     return sparse.csr_array((data, matrix.indices, matrix.indptr), shape=matrix.shape)
 
 
-def _normalised(matrix: sparse.csr_array) -> sparse.csr_array:
-    """Rows that sum to 1 up to round-off, brought as close to it as floating point allows."""
-    sums = np.repeat(np.asarray(matrix.sum(axis=1)).ravel(), np.diff(matrix.indptr))
-    matrix = sparse.csr_array(
-        (matrix.data / sums, matrix.indices.astype(np.int32), matrix.indptr.astype(np.int32)),
-        shape=matrix.shape,
-    )
+def with_sorted_rows(matrix: sparse.csr_array) -> sparse.csr_array:
+    """The same matrix with int32 indices, rising in each row."""
+    index = (matrix.indices.astype(np.int32), matrix.indptr.astype(np.int32))
+    matrix = sparse.csr_array((matrix.data, *index), shape=matrix.shape)
     matrix.sort_indices()
     return matrix
+
+
+def _normalised(matrix: sparse.csr_array) -> sparse.csr_array:
+    """Matrix whose rows sum to 1 as closely as floating point allows."""
+    sums = np.repeat(np.asarray(matrix.sum(axis=1)).ravel(), np.diff(matrix.indptr))
+    shares = sparse.csr_array((matrix.data / sums, matrix.indices, matrix.indptr), shape=matrix.shape)
+    return with_sorted_rows(shares)

@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Compiled counting of moves between cells, into hash tables that hold only the moves that occur.
+"""Hash tables of transition counts, filled by compiled code, with entries only for moves that occur.
 
-A table is a tuple: keys (int64, -1 where free), values (float64, two a key: the count of moves, whole and
-so exact up to 2^53, and the sum over steps of N_ij / N_i), the bits of its size, and the keys used.
+A table is a tuple: keys (int64, -1 where free); values (float64, two for each key: the count of moves, exact
+up to 2^53, and the sum over steps of N_ij / N_i); the binary logarithm of its size; and the number of keys.
 """
 
 from typing import Any
@@ -13,13 +13,13 @@ from numpy.typing import NDArray
 
 FREE = np.int64(-1)
 START_BITS = 14
-# Golden-ratio multiplier of Fibonacci hashing (Knuth, TAOCP vol. 3, 6.4).
+# Multiplier of Fibonacci hashing (Knuth, TAOCP vol. 3, 6.4).
 GOLDEN = np.uint64(0x9E3779B97F4A7C15)
 
 
 @njit(cache=True)
 def find_slot(keys, bits, key):  # type: ignore[no-untyped-def]
-    """Slot that holds a key, or the free one where it belongs (linear probing)."""
+    """Slot of a key, or the free slot for it (linear probing)."""
     slot = (np.uint64(key) * GOLDEN) >> np.uint64(64 - bits)
     last = np.uint64(keys.size - 1)
     while keys[slot] != key and keys[slot] != FREE:
@@ -41,7 +41,7 @@ def _doubled(keys, values, bits):  # type: ignore[no-untyped-def]
 
 @njit(cache=True)
 def _add_to_occupied(held, n, weight, occupied, share):  # type: ignore[no-untyped-def]
-    """Note which of the first n are occupied in this step, and what one particle in them is a share of."""
+    """Add a step to ``occupied`` of the first n cells (or pairs) with particles; set a particle's share."""
     for place in range(n):
         if held[place] > 0:
             occupied[place] += weight
@@ -50,11 +50,11 @@ def _add_to_occupied(held, n, weight, occupied, share):  # type: ignore[no-untyp
 
 @njit(cache=True)
 def _add_moves(rows, columns, n_cells, weight, share, table):  # type: ignore[no-untyped-def]
-    """Add one move a particle, from its row to its column, with keys ``row * n_cells + column``."""
+    """Add one move of each particle, from its row to its column, with keys ``row * n_cells + column``."""
     keys, values, bits, used = table
     particle = 0
     while particle < rows.size:
-        # Tables do not change inside _add_until_full, which keeps its loop tight.
+        # Tables do not grow inside _add_until_full, which keeps its loop fast.
         particle, used = _add_until_full(
             rows, columns, particle, n_cells, weight, share, keys, values, bits, used
         )
@@ -65,7 +65,7 @@ def _add_moves(rows, columns, n_cells, weight, share, table):  # type: ignore[no
 
 @njit(cache=True)
 def _add_until_full(rows, columns, first, n_cells, weight, share, keys, values, bits, used):  # type: ignore[no-untyped-def]
-    """Add moves from particle ``first`` on; that at which the table got half full, or their number."""
+    """Add moves from particle ``first`` on; the particle at which the table is half full, or their number."""
     for particle in range(first, rows.size):
         row = np.uint64(rows[particle])
         key = np.int64(row) * n_cells + np.int64(columns[particle])
@@ -91,14 +91,14 @@ def tally_moves(before, after, weights, occupied, table):  # type: ignore[no-unt
     weights : (n_steps,) int64 array
         How many times each step counts [1].
     occupied : (n_cells,) int64 array
-        Steps in which a cell held a particle; added to.
+        Steps in which a cell held a particle; changed in place.
     table : tuple
-        What was counted before.
+        Counts of earlier steps.
 
     Returns
     -------
     tuple
-        The table, which may have grown.
+        The table, perhaps a larger one.
     """
     n_cells = occupied.size
     held, share = np.zeros(n_cells, np.int64), np.zeros(n_cells)
@@ -116,7 +116,7 @@ def tally_moves(before, after, weights, occupied, table):  # type: ignore[no-unt
 
 @njit(cache=True)
 def _number_pairs(first, second, n_cells, pairs, pair_of):  # type: ignore[no-untyped-def]
-    """Number of each particle's pair, in order of appearance; pairs not seen before are added."""
+    """Set the number of each particle's pair, in order of appearance; new pairs are added."""
     keys, numbers, bits, used = pairs
     for particle in range(first.size):
         key = np.int64(first[particle]) * n_cells + np.int64(second[particle])
@@ -134,7 +134,7 @@ def _number_pairs(first, second, n_cells, pairs, pair_of):  # type: ignore[no-un
 
 @njit(cache=True)
 def tally_pairs(first, second, third, weights, n_cells, pairs, occupied, table):  # type: ignore[no-untyped-def]
-    """Add moves on from pairs of cells (from i to j, then to k) to a table, keys ``pair * n_cells + k``.
+    """Add moves from pairs of cells (from i to j, then to k) to a table, keys ``pair * n_cells + k``.
 
     Parameters
     ----------
@@ -145,16 +145,16 @@ def tally_pairs(first, second, third, weights, n_cells, pairs, occupied, table):
     n_cells : int
         Number of cells.
     pairs : tuple
-        keys ``i * n_cells + j``, number of each pair in order of appearance (int64), bits, pairs used.
+        Table with keys ``i * n_cells + j``; its values number the pairs in order of appearance (int64).
     occupied : (n,) int64 array
         Steps in which each pair held a particle, by number; at least as long as there are pairs.
     table : tuple
-        What was counted before.
+        Counts of earlier steps.
 
     Returns
     -------
     pairs, occupied, table : tuple
-        Each may have grown.
+        Perhaps larger ones.
     """
     pair_of = np.empty(first.shape[1], np.int64)
     held, share = np.zeros(occupied.size, np.int64), np.zeros(occupied.size)
@@ -175,7 +175,7 @@ def tally_pairs(first, second, third, weights, n_cells, pairs, occupied, table):
 
 
 def empty_table(dtype: type = np.float64, columns: int = 2) -> tuple[Any, ...]:
-    """Table without moves; for pairs with one column of int64."""
+    """Empty table; the table of pairs has one column of int64."""
     size = 1 << START_BITS
     return np.full(size, FREE), np.zeros((size, columns), dtype), START_BITS, 0
 

@@ -1,14 +1,14 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""The jump chain: particles keep their positions and draw displacements seen in their cell.
+"""The jump chain: particles keep their positions and draw displacements from the samples of their cell.
 
-A step adds to a particle's position the displacement of a particle drawn at random from all that were seen
-in the same cell (and velocity class, whose successor comes with it) at the start of a step. Assumed: in a
-cell the displacement does not depend on where in it a particle is; particles are independent. Walls
-reflect. A class seen too seldom in a cell draws from all of the cell; a cell in which nothing was seen draws
-from the nearest one in which something was. Samples count alike whatever the estimator (pooled).
+A step adds to a particle's position the displacement of a random particle of the learning window that started
+a step in the same cell (and velocity class; the class after the step comes with the sample). Assumed: the
+displacement does not depend on the position within the cell, and particles are independent. Walls reflect. A
+class with too few samples in a cell draws from all samples of the cell, an empty cell from the nearest cell
+with samples. All samples weigh the same with every estimator (pooled).
 
-The first assumption fails at walls: particles that came off one are seen near it, and drawn anywhere in its
-cell. The cells at a wall so hold less in the long run than the bed's, by a tenth to a quarter.
+The first assumption fails at walls: particles rebound close to the wall, and their displacements are drawn
+anywhere in its cell. In the long run the cells at a wall hold a tenth to a quarter less than in the bed.
 """
 
 import json
@@ -36,15 +36,15 @@ class JumpChain(TracerChain):
     Parameters
     ----------
     grid, lag, lag_s, report
-        As `tracers.TracerChain`.
+        As `tracer_chain.TracerChain`.
     classes : VelocityClasses
-        A single class where the velocity does not count.
+        A single class if the velocity is no part of the state.
     samples : (dx_m, dz_m, later)
         Displacements [m], float32, and the class after each, uint16, by rising state; (n_samples,).
     first : (n_states + 1,) int64 array
-        Where the samples of each state begin.
+        First sample of each state.
     fewest_samples : int
-        States with fewer samples draw from their whole cell.
+        States with fewer samples draw from all samples of their cell [1].
     """
 
     def __init__(
@@ -64,27 +64,19 @@ class JumpChain(TracerChain):
         self._draw_from = _draw_from(grid, classes.number, first, fewest_samples)
 
     def walk(self, start: Frames, steps: int, rng: np.random.Generator) -> Iterator[Place]:
-        """See `tracers.TracerChain.walk`; one draw a particle and step."""
+        """See `tracer_chain.TracerChain.walk`; one draw for each particle and step."""
         grid = self.grid
         x, z = start_places(start, grid)
-        # Differences of positions may stand for velocities: of the last two frames.
+        # Two frames: differences of positions replace velocities that were not measured.
         last = start.part(slice(max(0, len(start.times_s) - 2), None))
         now = self.classes.of(last)[-1] if self.classes.number > 1 else np.zeros(x.size, np.int32)
         size = np.array([grid.width_m, grid.height_m])
         yield x, z
         for _ in range(steps):
             _jump(
-                x,
-                z,
-                now,
-                *self._draw_from,
-                *self.samples,
-                self.classes.number,
-                grid.columns,
-                grid.rows,
-                size,
-                rng,
-            )
+                x, z, now, *self._draw_from, *self.samples,
+                self.classes.number, grid.columns, grid.rows, size, rng,
+            )  # fmt: skip
             yield x, z
 
     def arrays(self) -> dict[str, NDArray[Any]]:
@@ -104,12 +96,12 @@ class JumpChain(TracerChain):
 
     @classmethod
     def from_arrays(cls, arrays: dict[str, NDArray[Any]]) -> "JumpChain":
-        """Chain from what `arrays` gave.
+        """Chain from the arrays of `arrays`.
 
         Raises
         ------
         DataError
-            Something is missing.
+            An array is missing.
         """
         try:
             lag, fewest = (int(number) for number in arrays["step"])
@@ -125,7 +117,7 @@ class JumpChain(TracerChain):
                 fewest,
             )
         except KeyError as error:
-            raise DataError(f"a chain lacks {error}: build the transitions again") from error
+            raise DataError(f"the file of a chain lacks {error}: build the transitions again") from error
 
 
 def learn(
@@ -144,41 +136,41 @@ def learn(
     frames, grid, lag, estimator, step_weights
         As `registry.learn`; the estimator makes no difference.
     classes : (n_x, n_z)
-        Classes of the velocity along x and z that displacements are told apart by [1]; (1, 1) for none.
+        Classes of the velocity along x and z [1]; (1, 1) for none.
     fewest_samples : int
-        Classes seen less often in a cell than this draw from all samples of the cell [1].
+        Classes with fewer samples in a cell draw from all samples of the cell [1].
 
     Returns
     -------
     JumpChain
-        Its report holds how many of the visited states have fewer samples, and the share of moves in them.
+        Its report holds the share of the visited states that have too few samples, and that of their moves.
     """
     starts = np.repeat(*step_starts(frames.cells, lag, step_weights=step_weights))
     edges = quantile_classes(frames, classes)
     n, n_states = frames.cells.shape[1], grid.n_cells * edges.number
-    shown = edges.of(frames) if edges.number > 1 else np.zeros(frames.cells.shape, np.int32)
+    class_of = edges.of(frames) if edges.number > 1 else np.zeros(frames.cells.shape, np.int32)
     first = np.zeros(n_states + 1, np.int64)
     for frame in starts:
-        first[1:] += np.bincount(frames.cells[frame] * edges.number + shown[frame], minlength=n_states)
+        first[1:] += np.bincount(frames.cells[frame] * edges.number + class_of[frame], minlength=n_states)
     np.cumsum(first, out=first)
-    places, free = np.empty((2, starts.size * n), np.float32), first[:-1].copy()
+    jumps, free = np.empty((2, starts.size * n), np.float32), first[:-1].copy()
     later = np.empty(starts.size * n, np.uint16)
     for frame in starts:
-        state = np.asarray(frames.cells[frame]) * edges.number + shown[frame]
+        state = np.asarray(frames.cells[frame]) * edges.number + class_of[frame]
         dx, dz = (np.asarray(p[frame + lag]) - np.asarray(p[frame]) for p in (frames.x_m, frames.z_m))
-        _fill(state, dx, dz, shown[frame + lag], free, places[0], places[1], later)
+        _fill(state, dx, dz, class_of[frame + lag], free, jumps[0], jumps[1], later)
     report = _report(first, grid, edges.number, fewest_samples)
     report["velocities_from_differences_1"] = float(edges.number > 1 and not measured(frames))
-    samples = (places[0], places[1], later)
+    samples = (jumps[0], jumps[1], later)
     return JumpChain(grid, lag, lag * frames.interval_s, report, edges, samples, first, fewest_samples)
 
 
 def _report(first: NDArray[np.int64], grid: Grid, n_classes: int, fewest_samples: int) -> dict[str, float]:
     count = np.diff(first)
-    seen, thin = count > 0, count < fewest_samples
+    visited, thin = count > 0, count < fewest_samples
     return {
-        "states_1": float(seen.sum()),
-        "thin_state_share_1": float((thin & seen).sum() / seen.sum()),
+        "states_1": float(visited.sum()),
+        "thin_state_share_1": float((thin & visited).sum() / visited.sum()),
         "fallback_share_1": float(count[thin].sum() / count.sum()),
         "empty_cells_1": float((count.reshape(grid.n_cells, n_classes).sum(axis=1) == 0).sum()),
         "moves_1": float(count.sum()),
@@ -188,11 +180,11 @@ def _report(first: NDArray[np.int64], grid: Grid, n_classes: int, fewest_samples
 def _draw_from(
     grid: Grid, n_classes: int, first: NDArray[np.int64], fewest_samples: int
 ) -> tuple[NDArray[np.int64], NDArray[np.int64]]:
-    """First sample and number of samples that each state draws from, (n_states,) each."""
+    """First sample and number of samples from which each state draws, (n_states,) each."""
     count = np.diff(first)
     of_cell = count.reshape(grid.n_cells, n_classes).sum(axis=1)
     filled = np.flatnonzero(of_cell)
-    # An empty cell draws from the filled one whose middle is nearest.
+    # An empty cell draws from the filled cell whose centre is nearest.
     donor = filled[KDTree(grid.centres_m[filled]).query(grid.centres_m)[1]].repeat(n_classes)
     whole = (count < fewest_samples) | (of_cell.repeat(n_classes) == 0)
     begin = np.where(whole, first[donor * n_classes], first[:-1])
@@ -201,7 +193,7 @@ def _draw_from(
 
 @njit(cache=True)
 def _fill(state, dx, dz, later_class, free, to_x, to_z, later):  # type: ignore[no-untyped-def]
-    """Put the moves of one step where those of their states belong; free is the next place of each state."""
+    """Store the moves of one step by their states; ``free`` is the next free sample of each state."""
     for p in range(state.size):
         slot = free[state[p]]
         free[state[p]] = slot + 1

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""A chain that is Markov on some set of states, each of which lies in one cell."""
+"""Markov chain on a set of states, each of which lies in one cell."""
 
 import json
 from collections.abc import Iterator, Sequence
@@ -21,12 +21,12 @@ from bedchain.trajectory.grid import Grid
 
 @dataclass(frozen=True)
 class MarkovChain:
-    """Transition matrix between states, the cell of each state, and how to find a particle's state.
+    """Transition matrix between states, the cell of each state, and the rule for a particle's state.
 
-    A state is found from what a particle shows in the last frames before the start: its symbol in each of
-    ``history`` frames, one lag apart, oldest first, read as one number in base ``n_symbols`` (its key). The
-    symbol is the cell or, with velocity classes, cell * classes + class. Keys that no state has fall back on
-    the state numbered ``fallback + cell``.
+    The state of a particle follows from its symbols in the last ``history`` frames before the start, one lag
+    apart: oldest first, they are the digits of its key, a number in base ``n_symbols``. The symbol is the
+    cell or, with velocity classes, cell * classes + class. A particle whose key is no state's has the state
+    ``fallback + cell``.
 
     Parameters
     ----------
@@ -43,15 +43,15 @@ class MarkovChain:
     cell_of_state : (n_states,) int32 array
         Cell that each state lies in.
     history : int
-        Frames, one lag apart, that make a state.
+        Frames, one lag apart, that determine a state.
     state_keys : (n_keyed,) int64 array
         Rising keys of the first ``n_keyed`` states.
     fallback : int
-        First of the ``n_cells`` states for particles of which too little is known.
+        First of the ``n_cells`` states for particles with an unknown key.
     report : dict of str to float
-        What learning found.
+        Numbers about the learning.
     classes : VelocityClasses, optional
-        Classes of the velocity that the states tell apart.
+        Classes of the velocity, if they are part of the states.
     """
 
     name: str
@@ -68,11 +68,11 @@ class MarkovChain:
 
     @property
     def n_symbols(self) -> int:
-        """What a particle may show in one frame [1]."""
+        """Number of symbols that a particle may have in a frame [1]."""
         return self.grid.n_cells * (1 if self.classes is None else self.classes.number)
 
     def symbols(self, frames: Frames) -> NDArray[np.int32]:
-        """What each particle shows in each frame from number ``back`` on, (n_frames - back, n_particles)."""
+        """Symbol of each particle in each frame from number ``back`` on, (n_frames - back, n_particles)."""
         cells = np.asarray(frames.cells)
         if self.classes is None:
             return cells
@@ -80,7 +80,7 @@ class MarkovChain:
 
     @property
     def back(self) -> int:
-        """Frames that must lead up to one for what its particles show [1]."""
+        """Earlier frames that the symbols of a frame need [1]."""
         return 0 if self.classes is None else self.classes.back
 
     def states(self, start: Frames) -> NDArray[np.int32]:
@@ -89,18 +89,18 @@ class MarkovChain:
         Raises
         ------
         DataError
-            Fewer frames lead up to the start than a state needs.
+            There are fewer frames than a state needs.
         """
-        shown = (self.history - 1) * self.lag + 1
-        needed = shown + self.back
+        span = (self.history - 1) * self.lag + 1
+        needed = span + self.back
         if len(start.times_s) < needed:
             raise DataError(
                 f"the {self.name} chain starts from {needed} frames, {len(start.times_s)} given: "
-                "start later, so that as many frames come before"
+                "start later, so that there are as many frames before the start"
             )
-        # A frame more, if there is one: differences of positions may stand for velocities.
+        # One frame more, if there is one: differences of positions replace velocities that were not measured.
         first = max(0, len(start.times_s) - needed - 1)
-        return self.states_of(self.symbols(start.part(slice(first, None)))[-shown :: self.lag])
+        return self.states_of(self.symbols(start.part(slice(first, None)))[-span :: self.lag])
 
     def states_of(self, symbols: NDArray[np.int32]) -> NDArray[np.int32]:
         """State of each particle from its symbols, (history, n_particles), oldest first; (n_particles,)."""
@@ -121,17 +121,17 @@ class MarkovChain:
         steps: int,
         rng: np.random.Generator | None = None,
     ) -> NDArray[np.float64]:
-        """See `chain.Chain.mixing`; positions are known at step 0, later a split cell counts by its area."""
+        """See `chain.Chain.mixing`; after step 0 a cell cut by a line counts for both sides, by area."""
         marked = mixing.sides(np.asarray(start.x_m[-1]), np.asarray(start.z_m[-1]), split_x_m, split_z_m)
         shares = mixing.side_shares(self.grid, split_x_m, split_z_m)
         if rng is None:
             begin = mixing.marked_histogram(self.states(start), marked, self.matrix.shape[0]).astype(float)
             # Left and right are complements, as are low and up: two observables give all four curves.
-            found = propagate.expected_values(
+            means = propagate.expected_values(
                 self.matrix, begin, shares[[0, 2]][:, self.cell_of_state], steps
             )
             curves = np.stack(
-                (found[:, 0, 0], 1 - found[:, 1, 0], found[:, 2, 1], 1 - found[:, 3, 1]), axis=1
+                (means[:, 0, 0], 1 - means[:, 1, 0], means[:, 2, 1], 1 - means[:, 3, 1]), axis=1
             )
         else:
             curves = np.concatenate(
@@ -152,11 +152,11 @@ class MarkovChain:
     ) -> NDArray[np.float64] | NDArray[np.int64]:
         """See `chain.Chain.densities`."""
         if rng is not None:
-            wanted = {int(step) for step in steps}
+            step_numbers = {int(step) for step in steps}
             counts = {
                 step: mixing.marked_histogram(cells, marked, self.grid.n_cells)
-                for step, cells in enumerate(self.paths(start, max(wanted), rng))
-                if step in wanted
+                for step, cells in enumerate(self.paths(start, max(step_numbers), rng))
+                if step in step_numbers
             }
             return np.stack([counts[int(step)] for step in steps])
         begin = mixing.marked_histogram(self.states(start), marked, self.matrix.shape[0]).astype(float)
@@ -175,7 +175,7 @@ class MarkovChain:
         return self._in_cells(long_run_density(self.matrix, begin))
 
     def _in_cells(self, by_state: NDArray[np.float64]) -> NDArray[np.float64]:
-        """What the states of each cell hold together: (..., n_states) to (..., n_cells)."""
+        """Sums over the states of each cell: (..., n_states) to (..., n_cells)."""
         n_states = self.cell_of_state.size
         index = (self.cell_of_state, np.arange(n_states + 1))
         return np.asarray(
@@ -201,12 +201,12 @@ class MarkovChain:
 
     @classmethod
     def from_arrays(cls, arrays: dict[str, NDArray[Any]]) -> "MarkovChain":
-        """Chain from what `arrays` gave.
+        """Chain from the arrays of `arrays`.
 
         Raises
         ------
         DataError
-            Something is missing.
+            An array is missing.
         """
         try:
             width_m, height_m = (float(size) for size in arrays["bed_m"])
@@ -231,4 +231,4 @@ class MarkovChain:
                 classes,
             )
         except KeyError as error:
-            raise DataError(f"a chain lacks {error}: build the transitions again") from error
+            raise DataError(f"the file of a chain lacks {error}: build the transitions again") from error

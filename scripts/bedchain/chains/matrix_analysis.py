@@ -1,31 +1,31 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""What a transition matrix implies: long-run density, timescales, passage and residence times."""
+"""Long-run density, eigenvalues, timescales and first passage of a transition matrix."""
 
 import numpy as np
 from numpy.typing import NDArray
 from scipy import sparse
-from scipy.sparse import linalg
+from scipy.sparse import csgraph, linalg
 
 from bedchain.chains.classes import closed_classes
 from bedchain.errors import DataError
 
-# Up to this many states a dense eigenvalue solver is faster, and sure to find all.
+# Up to this many states a dense eigenvalue solver is faster, and certain to find all eigenvalues.
 DENSE_STATES = 400
-# Up to this many states linear systems are solved directly; the fill-in of more takes minutes and gigabytes.
+# Up to this many states linear systems are solved directly; above, the fill-in takes minutes and gigabytes.
 DIRECT_STATES = 10_000
-# What one step may change of a long-run density found by iteration.
+# Largest change of a long-run density in one step, summed over the states [1].
 STATIONARY_TOLERANCE = 1e-9
-# A linear system solved by iteration: error relative to its right side, iterations at most (the dynamic chain
-# of 81 000 particles takes 13), and what its incomplete factors leave out and may fill. Cells are numbered
-# row by row, so that the order as it is serves best: half a second, a fill-reducing one takes 1 to 13.
+# Iterative solution of a linear system: error relative to the right side, most iterations (the dynamic chain
+# of 81 000 particles takes 13), and drop tolerance and fill factor of the incomplete factors. Cells are
+# numbered row by row, so their natural order is best: 0.5 s; fill-reducing orders take 1 to 13 s.
 ITERATION_ERROR, ITERATIONS = 1e-10, 1000
 DROPPED, FILL, ORDER = 3e-2, 2, "NATURAL"
-# Error of eigenvalues found by iteration, relative to themselves; round-off takes twice as long.
+# Relative error of eigenvalues found by iteration; down to round-off takes twice as long.
 EIGENVALUE_ERROR = 1e-10
 
 
 def long_run_density(matrix: sparse.csr_array, start: NDArray[np.float64]) -> NDArray[np.float64]:
-    """Distribution that the chain settles to from a start, averaged over a period if it has one.
+    """Distribution that the chain settles to from a start; of a periodic chain the mean over a period.
 
     Parameters
     ----------
@@ -49,20 +49,12 @@ def long_run_density(matrix: sparse.csr_array, start: NDArray[np.float64]) -> ND
     return density
 
 
-def stationary_density(matrix: sparse.csr_array) -> NDArray[np.float64]:
-    """Stationary distribution of the largest closed class, 0 elsewhere, (n_states,)."""
-    states = closed_classes(matrix)[0]
-    density = np.zeros(matrix.shape[0])
-    density[states] = _stationary(sparse.csr_array(matrix[states][:, states]))
-    return density
-
-
 def _stationary(matrix: sparse.csr_array) -> NDArray[np.float64]:
     """Solution of ``p (I - P) = 0``, ``sum(p) = 1`` for one closed class."""
     n = matrix.shape[0]
     if n == 1:
         return np.ones(1)
-    # The most entered state is set to 1, the rest solved for.
+    # The state with the largest inflow is set to 1, the others are solved for.
     first = int(np.argmax(matrix.sum(axis=0)))
     rest = np.flatnonzero(np.arange(n) != first)
     balance = sparse.csc_array((sparse.eye_array(n) - matrix).T)
@@ -80,7 +72,7 @@ def _stationary(matrix: sparse.csr_array) -> NDArray[np.float64]:
 def _absorbed(
     matrix: sparse.csr_array, start: NDArray[np.float64], classes: list[NDArray[np.int64]]
 ) -> NDArray[np.float64]:
-    """Mass of the start in each recurrent state when it first gets to one."""
+    """Mass of the start by the recurrent state that it reaches first, (n_states,)."""
     recurrent = np.zeros(matrix.shape[0], bool)
     recurrent[np.concatenate(classes)] = True
     transient = np.flatnonzero(~recurrent)
@@ -95,19 +87,20 @@ def _absorbed(
 def leading_eigenvalues(matrix: sparse.csr_array, n: int = 6) -> NDArray[np.complex128]:
     """Eigenvalues of the largest closed class, by falling magnitude, the first is 1; (at most n,).
 
-    No reversibility is assumed: particles go round, and pairs of complex eigenvalues tell how fast.
+    The chain need not be reversible: particles circulate, and complex pairs of eigenvalues give the period.
     """
     states = closed_classes(matrix)[0]
     part = sparse.csr_array(matrix[states][:, states])
     if states.size <= max(DENSE_STATES, n + 2):
-        found = np.linalg.eigvals(part.toarray())
+        eigenvalues = np.linalg.eigvals(part.toarray())
     else:
         start = np.random.default_rng(0).random(states.size)
-        found = linalg.eigs(
+        eigenvalues = linalg.eigs(
             part.T, k=n, which="LM", v0=start, ncv=max(5 * n, 20), tol=EIGENVALUE_ERROR,
             return_eigenvectors=False,
         )  # fmt: skip
-    return np.asarray(found[np.argsort(-np.abs(found), kind="stable")][:n], np.complex128)
+    order = np.argsort(-np.abs(eigenvalues), kind="stable")
+    return np.asarray(eigenvalues[order][:n], np.complex128)
 
 
 def implied_timescales(matrix: sparse.csr_array, lag_s: float, n: int = 5) -> NDArray[np.float64]:
@@ -119,7 +112,7 @@ def implied_timescales(matrix: sparse.csr_array, lag_s: float, n: int = 5) -> ND
 
 
 def mixing_time(matrix: sparse.csr_array, lag_s: float) -> float:
-    """Mixing time by the spectral gap, ``lag / (1 - |lambda_2|)`` [s]; infinite for a chain with a period."""
+    """Mixing time by the spectral gap, ``lag / (1 - |lambda_2|)`` [s]; infinite for a periodic chain."""
     size = np.abs(leading_eigenvalues(matrix, 2))
     if size.size < 2:
         return 0.0
@@ -140,9 +133,9 @@ def first_passage_steps(matrix: sparse.csr_array, target: NDArray[np.bool_]) -> 
     Returns
     -------
     (n_states,) array
-        0 in the set, infinite where the set may never be reached.
+        0 in the set, infinite where a particle may never reach the set.
     """
-    link = sparse.csr_array(matrix > 0).astype(np.int8)
+    link = sparse.csr_array(matrix > 0)
     arrives = _leads_to(link, target, np.ones_like(target))
     strays = _leads_to(link, ~arrives, ~target)
     steps = np.where(target, 0.0, np.inf)
@@ -154,29 +147,27 @@ def first_passage_steps(matrix: sparse.csr_array, target: NDArray[np.bool_]) -> 
 
 
 def _solved(system: sparse.csc_array, right: NDArray[np.float64]) -> NDArray[np.float64]:
-    """Solution of a linear system: by elimination, or by iteration where its fill would take minutes."""
+    """Solution of a linear system, by elimination up to `DIRECT_STATES`, else by iteration."""
     if right.size > DIRECT_STATES:
-        nearly = linalg.spilu(system, drop_tol=DROPPED, fill_factor=FILL, permc_spec=ORDER)
-        guide = linalg.LinearOperator(system.shape, nearly.solve)
-        found, failed = linalg.bicgstab(system, right, rtol=ITERATION_ERROR, maxiter=ITERATIONS, M=guide)
+        factors = linalg.spilu(system, drop_tol=DROPPED, fill_factor=FILL, permc_spec=ORDER)
+        inverse = linalg.LinearOperator(system.shape, factors.solve)
+        solution, failed = linalg.bicgstab(system, right, rtol=ITERATION_ERROR, maxiter=ITERATIONS, M=inverse)
         if not failed:
-            return np.asarray(found)
+            return np.asarray(solution)
     return np.atleast_1d(linalg.spsolve(system, right))
 
 
 def _leads_to(
-    link: sparse.csr_array, there: NDArray[np.bool_], through: NDArray[np.bool_]
+    link: sparse.csr_array, target: NDArray[np.bool_], through: NDArray[np.bool_]
 ) -> NDArray[np.bool_]:
-    """States from which a set may be reached through the given states."""
-    reached = there.copy()
-    while True:
-        more = reached | (through & (link.astype(np.int32) @ reached.astype(np.int32) > 0))
-        if (more == reached).all():
-            return reached
-        reached = more
-
-
-def residence_steps(matrix: sparse.csr_array) -> NDArray[np.float64]:
-    """Mean number of steps that a particle stays in each state, ``1 / (1 - P_ii)``, (n_states,)."""
-    leave = 1.0 - matrix.diagonal()
-    return np.divide(1.0, leave, out=np.full(leave.shape, np.inf), where=leave > 0)
+    """States from which a set can be reached along the given states, (n_states,)."""
+    n = target.size
+    rows, columns = link.nonzero()
+    usable = through[rows]
+    # Links backwards, and from one more state, number n, to all of the set.
+    origin = np.concatenate((columns[usable], np.full(target.sum(), n)))
+    end = np.concatenate((rows[usable], np.flatnonzero(target)))
+    backwards = sparse.csr_array((np.ones(origin.size), (origin, end)), shape=(n + 1, n + 1))
+    reached = np.zeros(n + 1, bool)
+    reached[csgraph.breadth_first_order(backwards, n, return_predecessors=False)] = True
+    return reached[:n]

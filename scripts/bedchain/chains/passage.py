@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""How long particles stay in a cell, and how long they need from the bottom of the bed to its top."""
+"""Residence times in cells, and passage times from the bottom of the bed to its top."""
 
 import numpy as np
 from numpy.typing import NDArray
@@ -12,7 +12,7 @@ from bedchain.trajectory.grid import Grid
 def residence_in_cells(
     chain: MarkovChain, start: NDArray[np.float64]
 ) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
-    """Mean time in each cell from entering to leaving it, whatever states the cell holds.
+    """Mean time in each cell from entering to leaving it, over all states of the cell.
 
     Parameters
     ----------
@@ -23,16 +23,16 @@ def residence_in_cells(
     Returns
     -------
     residence_s : (n_cells,) array
-        What is in the cell over what leaves it in a step, in the long run [s]; for the static chain
-        `matrix_analysis.residence_steps`. Infinite where nothing leaves, NaN where nothing is.
+        Particles in the cell over those that leave it in a unit of time, in the long run [s]; for the
+        static chain ``lag_s / (1 - P_ii)``. Infinite where none leaves, NaN where there is none.
     density : (n_cells,) array
         Share of the particles in each cell in the long run [1].
     """
     states = long_run_density(chain.matrix, start)
     lengths = np.diff(chain.matrix.indptr)
-    left = np.repeat(chain.cell_of_state, lengths) != chain.cell_of_state[chain.matrix.indices]
-    leaving = np.repeat(states, lengths) * chain.matrix.data * left
     origin = np.repeat(chain.cell_of_state, lengths)
+    leaving = np.repeat(states, lengths) * chain.matrix.data
+    leaving *= origin != chain.cell_of_state[chain.matrix.indices]
     outflow = np.bincount(origin, leaving, chain.grid.n_cells)
     density = np.bincount(chain.cell_of_state, states, chain.grid.n_cells).astype(np.float64)
     with np.errstate(divide="ignore", invalid="ignore"):
@@ -40,7 +40,7 @@ def residence_in_cells(
 
 
 def top_row(density: NDArray[np.float64], grid: Grid, share: float) -> int:
-    """Lowest row such that at most a share of the particles is in it and above.
+    """Lowest row with at most a given share of the particles in it and above it.
 
     Parameters
     ----------
@@ -53,7 +53,7 @@ def top_row(density: NDArray[np.float64], grid: Grid, share: float) -> int:
     Returns
     -------
     int
-        At least 1: never the bottom row itself.
+        At least 1, never the bottom row.
     """
     by_row = density.reshape(grid.rows, grid.columns).sum(axis=1)
     above = by_row[::-1].cumsum()[::-1]
@@ -75,15 +75,15 @@ def passage_time(chain: MarkovChain, start: NDArray[np.float64], row: int) -> fl
     Returns
     -------
     float
-        [s]; infinite where some may never get there, NaN without particles at the bottom.
+        [s]; infinite where some may never reach the row, NaN without particles at the bottom.
     """
-    height = chain.cell_of_state // chain.grid.columns
-    steps = first_passage_steps(chain.matrix, height >= row)
-    from_bottom = np.where(height == 0, start, 0.0)
-    if from_bottom.sum() == 0:
+    row_of_state = chain.cell_of_state // chain.grid.columns
+    steps = first_passage_steps(chain.matrix, row_of_state >= row)
+    at_bottom = np.where(row_of_state == 0, start, 0.0)
+    if at_bottom.sum() == 0:
         return float("nan")
-    there = from_bottom > 0
-    return float(chain.lag_s * (steps[there] @ from_bottom[there]) / from_bottom.sum())
+    held = at_bottom > 0
+    return float(chain.lag_s * (steps[held] @ at_bottom[held]) / at_bottom.sum())
 
 
 def arrived(cells: NDArray[np.int32], grid: Grid, row: int) -> NDArray[np.float64]:
@@ -100,9 +100,9 @@ def arrived(cells: NDArray[np.int32], grid: Grid, row: int) -> NDArray[np.float6
     Returns
     -------
     (n_frames,) array
-        Of the particles that are in the bottom row in the first frame [1]; NaN without any.
+        Of the particles in the bottom row in the first frame [1]; NaN if there are none.
     """
-    height = np.asarray(cells)[:, np.asarray(cells[0]) < grid.columns] // grid.columns
-    if height.shape[1] == 0:
-        return np.full(len(height), np.nan)
-    return np.asarray((np.maximum.accumulate(height, axis=0) >= row).mean(axis=1))
+    rows = np.asarray(cells)[:, np.asarray(cells[0]) < grid.columns] // grid.columns
+    if rows.shape[1] == 0:
+        return np.full(len(rows), np.nan)
+    return np.asarray((np.maximum.accumulate(rows, axis=0) >= row).mean(axis=1))

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Running a chain on any set of states: exact propagation, and Monte Carlo of every particle."""
+"""Propagation of a chain: exact expectations, and Monte Carlo of every particle."""
 
 from collections.abc import Iterator, Sequence
 
@@ -12,17 +12,17 @@ from bedchain.errors import DataError
 
 # A row sum is a sum of at most a few hundred shares, each rounded once.
 ROW_SUM_TOLERANCE = 1e-12
-# Steps looked back over are kept in blocks of about this size.
+# Expected values of so many bytes of steps are kept at a time.
 BLOCK_BYTES = 32 * 2**20
 
 
 def check_matrix(matrix: sparse.csr_array) -> None:
-    """Refuse a matrix that is not row-stochastic.
+    """Check that a matrix is row-stochastic.
 
     Raises
     ------
     DataError
-        Names the first bad row and its sum.
+        It is not; the message names the first bad row.
     """
     if matrix.shape[0] != matrix.shape[1]:
         raise DataError(f"a transition matrix of shape {matrix.shape}: it must be square")
@@ -57,7 +57,7 @@ def _advance(indptr, indices, data, now, later):  # type: ignore[no-untyped-def]
 def _advance_many(indptr, indices, data, now, later, totals, steps):  # type: ignore[no-untyped-def]
     for _ in range(steps):
         _advance(indptr, indices, data, now, later)
-        # Row sums are 1 to round-off only; left alone that grows with the number of steps.
+        # Row sums are 1 to round-off only: without correction the error grows with the number of steps.
         for g in range(now.shape[1]):
             total = 0.0
             for i in range(now.shape[0]):
@@ -81,12 +81,12 @@ def propagate(
     start : (n_groups, n_states) array
         Particles (or probability) of each group in each state at step 0.
     steps : int or rising sequence of int
-        Steps to give; an int gives 0 to that many.
+        Steps of the result; an int stands for all from 0 to it.
 
     Returns
     -------
-    (n_given, n_groups, n_states) array
-        The groups' totals stay those of the start: the round-off of each step is taken out in proportion.
+    (n_steps, n_groups, n_states) array
+        The groups' totals stay those of the start: each step is scaled to remove its round-off.
 
     Raises
     ------
@@ -94,37 +94,37 @@ def propagate(
         The matrix is not row-stochastic, or the steps do not rise.
     """
     check_matrix(matrix)
-    wanted = np.arange(steps + 1) if isinstance(steps, int) else np.asarray(steps, dtype=np.int64)
-    if wanted.size and (wanted[0] < 0 or (np.diff(wanted) < 0).any()):
-        raise DataError(f"steps {list(wanted)} must rise from 0 or more")
+    step_numbers = np.arange(steps + 1) if isinstance(steps, int) else np.asarray(steps, dtype=np.int64)
+    if step_numbers.size and (step_numbers[0] < 0 or (np.diff(step_numbers) < 0).any()):
+        raise DataError(f"steps {list(step_numbers)} must rise from 0 or more")
     now = np.array(np.atleast_2d(start).T, dtype=np.float64, order="C")
     later = np.empty_like(now)
     totals = now.sum(axis=0)
-    given = np.empty((wanted.size, now.shape[1], now.shape[0]))
+    distributions = np.empty((step_numbers.size, now.shape[1], now.shape[0]))
     done = 0
-    for place, step in enumerate(wanted):
+    for place, step in enumerate(step_numbers):
         now, later = _advance_many(
             matrix.indptr, matrix.indices, matrix.data, now, later, totals, int(step) - done
         )
         done = int(step)
-        given[place] = now.T
-    return given
+        distributions[place] = now.T
+    return distributions
 
 
 @njit(cache=True)
 def _look_back(indptr, indices, data, out):  # type: ignore[no-untyped-def]
     """Expected values of two observables by state after 1, 2, ... steps, (n_steps + 1, n_states, 2)."""
     for step in range(out.shape[0] - 1):
-        # Rows held apart and unsigned indices: three times faster than out[step, j, 0] with signed ones.
+        # Two views and unsigned indices: three times as fast as out[step, j, 0] with signed indices.
         now, back = out[step], out[step + 1]
         for i in range(now.shape[0]):
-            one, two = 0.0, 0.0
+            first, second = 0.0, 0.0
             for entry in range(np.uint64(indptr[i]), np.uint64(indptr[i + 1])):
                 j = np.uint32(indices[entry])
-                one += data[entry] * now[j, 0]
-                two += data[entry] * now[j, 1]
-            back[i, 0] = one
-            back[i, 1] = two
+                first += data[entry] * now[j, 0]
+                second += data[entry] * now[j, 1]
+            back[i, 0] = first
+            back[i, 1] = second
 
 
 def expected_values(
@@ -132,7 +132,7 @@ def expected_values(
 ) -> NDArray[np.float64]:
     """Expected mean of observables over marked groups at steps 0 to ``steps``, exactly.
 
-    The observables are carried back, ``f_t = P f_(t-1)``, once for all groups, and not the groups forward.
+    The observables are propagated backwards, ``f_t = P f_(t-1)``, once for all groups.
 
     Parameters
     ----------
@@ -193,13 +193,13 @@ def _move(indptr, indices, cdf, guide, states, rng):  # type: ignore[no-untyped-
 
 @njit(cache=True)
 def _guide(indptr, cdf):  # type: ignore[no-untyped-def]
-    """Where to start looking in a row, for draws from the k-th of as many equal parts as it has entries."""
+    """First entry to search in a row, for draws in each of as many equal parts as the row has entries."""
     guide = np.zeros(cdf.size, np.int32)
     for i in range(indptr.size - 1):
         first, length = indptr[i], indptr[i + 1] - indptr[i]
         entry = 0
         for part in range(length):
-            # A hair early, so that rounding of draw * length cannot skip an entry.
+            # Slightly early, so that rounding of draw * length cannot skip an entry.
             while entry < length - 1 and cdf[first + entry] <= (part - 1e-9) / length:
                 entry += 1
             guide[first + part] = entry
@@ -220,7 +220,7 @@ def walk(
     steps : int
         Number of steps.
     rng : numpy Generator
-        One draw per particle and step, in the order of the particles: the same seed gives the same paths.
+        A draw per particle and step, in the order of the particles: the same seed gives the same paths.
 
     Yields
     ------
@@ -240,7 +240,7 @@ def walk(
 def simulate(
     matrix: sparse.csr_array, start: NDArray[np.integer], steps: int, rng: np.random.Generator
 ) -> NDArray[np.int32]:
-    """All of `walk` as one (steps + 1, n_particles) int32 array."""
+    """States of `walk` as an array, (steps + 1, n_particles) int32."""
     paths = np.empty((steps + 1, len(start)), np.int32)
     for step, states in enumerate(walk(matrix, start, steps, rng)):
         paths[step] = states

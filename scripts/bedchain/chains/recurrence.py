@@ -1,13 +1,13 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""The recurrence chain: pieces of the learning window, played one after the other, carry tracers along.
+"""The recurrence chain: tracers follow the particles through segments of the learning window.
 
-A path goes through the frames of the window and jumps, now and then, from a frame to one that looks alike
-(`likeness`); at each step of it a tracer takes the displacement of the particle that is nearest to it in
-that frame, and keeps its position. All tracers share the path, so bubbles pass as bubbles (the idea of
-recurrence CFD: Lichtenegger and Pirker 2016, Chem. Eng. Sci. 153, 394). Assumed: what follows on alike
-states is alike, and a tracer goes as the particle beside it. Walls reflect. Two baselines need no likeness:
-``shuffled`` plays the steps in random order (each step real, no memory), ``replay`` plays the window in
-order. Steps count alike whatever the estimator.
+A path goes through the frames of the window and sometimes jumps from a frame to a similar frame
+(`frame_distance`). Tracers keep their positions; at each step of the path a tracer takes the displacement of
+the particle that is nearest to it in the frame. All tracers share the path, so that whole bubbles pass (the
+idea of recurrence CFD: Lichtenegger and Pirker 2016, Chem. Eng. Sci. 153, 394). Assumed: similar states of
+the bed have similar futures, and a tracer moves as the nearest particle does. Walls reflect. Two baselines do
+not compare frames: ``shuffled`` takes the steps of the window in random order (no memory from step to step),
+``replay`` in their own order. All steps weigh the same with every estimator.
 """
 
 import json
@@ -19,7 +19,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from bedchain.chains.counting import step_starts
-from bedchain.chains.frame_distance import Likeness, compare
+from bedchain.chains.frame_distance import FrameFields, frame_fields
 from bedchain.chains.nearest_particle import nearest
 from bedchain.chains.tracer_chain import Place, TracerChain, reflect, start_places
 from bedchain.chains.velocity_binning import measured
@@ -28,26 +28,26 @@ from bedchain.trajectory.frames import Frames
 from bedchain.trajectory.grid import Grid
 
 ORDERS = ("recurrence", "shuffled", "replay")
-# Paths whose mean stands for expected values: tracers share a path, more tracers do not make up for paths.
+# Paths averaged for expected values: tracers share a path, so that more tracers cannot replace more paths.
 EXPECTED_PATHS = 8
 
 
 @dataclass(frozen=True)
-class Settings:
-    """How the path goes.
+class RecurrenceSettings:
+    """Settings of the path through the window.
 
     Parameters
     ----------
     order : {"recurrence", "shuffled", "replay"}
-        Jumps between alike frames, steps at random, or the window in order.
+        Jumps between similar frames, steps in random order, or the window in order.
     segment_s : float
-        Mean time between two jumps [s]; the end of the window makes one too.
+        Mean time between two jumps [s]; at the end of the window the path always jumps.
     separation_s : float
-        A jump leads at least so far away in time [s].
+        Least time between the two frames of a jump [s].
     neighbours : int
-        A jump leads to any of so many of the most alike frames [1].
+        Number of the most similar frames from which the target of a jump is drawn [1].
     coarse_m : float
-        Cells in which frames are compared [m].
+        Edge of the cells in which frames are compared [m].
     """
 
     order: str = "recurrence"
@@ -64,24 +64,24 @@ class Settings:
 
 
 class RecurrenceChain(TracerChain):
-    """A window of frames to be played, and how.
+    """A window of frames, and the rule for the path through it.
 
     Parameters
     ----------
     grid, lag, lag_s, report
-        As `tracers.TracerChain`.
-    settings : Settings
+        As `tracer_chain.TracerChain`.
+    settings : RecurrenceSettings
     places_m : (2, n_frames, n_particles) float32 array
         Positions x and z in the window [m].
     weights : (n_frames - lag,) int64 array
-        How many times the step from each frame counts; 0 keeps it out.
-    likeness : Likeness
-        Of the frames.
+        Weight of the step from each frame; a step of weight 0 is not used [1].
+    fields : FrameFields
+        Of the window.
 
     Raises
     ------
     DataError
-        The window is too short to jump in.
+        The window is too short for jumps.
     """
 
     expected_paths = EXPECTED_PATHS
@@ -92,18 +92,18 @@ class RecurrenceChain(TracerChain):
         lag: int,
         lag_s: float,
         report: dict[str, float],
-        settings: Settings,
+        settings: RecurrenceSettings,
         places_m: NDArray[np.float32],
         weights: NDArray[np.int64],
-        likeness: Likeness,
+        fields: FrameFields,
     ) -> None:
         super().__init__("recurrence", grid, lag, lag_s, report)
-        self.settings, self.places_m, self.weights, self.likeness = settings, places_m, weights, likeness
+        self.settings, self.places_m, self.weights, self.fields = settings, places_m, weights, fields
         self.usable = np.repeat(np.arange(weights.size), weights)
         self.targets = self._targets() if settings.order == "recurrence" else []
 
     def walk(self, start: Frames, steps: int, rng: np.random.Generator) -> Iterator[Place]:
-        """See `tracers.TracerChain.walk`; all randomness is in the path."""
+        """See `tracer_chain.TracerChain.walk`; only the path is random."""
         size = np.array([self.grid.width_m, self.grid.height_m])
         tracers = np.stack(start_places(start, self.grid))
         yield tracers[0], tracers[1]
@@ -116,18 +116,18 @@ class RecurrenceChain(TracerChain):
             yield tracers[0], tracers[1]
 
     def path(self, start: Frames, steps: int, rng: np.random.Generator) -> list[int]:
-        """Frames that the steps begin at; the first is the one most like the start (replay: the first)."""
+        """First frame of each step; the first is the most similar to the start, or the window's (replay)."""
         if self.settings.order == "shuffled":
             return [int(frame) for frame in rng.choice(self.usable, steps)]
         if self.settings.order == "replay":
-            once = np.unique(self.usable)
-            frames = [int(once[0])]
+            usable = np.unique(self.usable)
+            frames = [int(usable[0])]
             while len(frames) < steps:
-                after = int(np.searchsorted(once, frames[-1] + self.lag))
-                frames.append(int(once[after % once.size]))
+                after = int(np.searchsorted(usable, frames[-1] + self.lag))
+                frames.append(int(usable[after % usable.size]))
             return frames[:steps]
-        alike = self.likeness.to(self.likeness.of(start))[: self.weights.size]
-        frames = [int(np.where(self.weights > 0, alike, np.inf).argmin())]
+        distances = self.fields.distances_from(self.fields.last_of(start))[: self.weights.size]
+        frames = [int(np.where(self.weights > 0, distances, np.inf).argmin())]
         jump = min(1.0, self.lag_s / self.settings.segment_s)
         while len(frames) < steps:
             here = frames[-1] + self.lag
@@ -136,18 +136,18 @@ class RecurrenceChain(TracerChain):
         return frames[:steps]
 
     def _targets(self) -> list[NDArray[np.int64]]:
-        """Frames that a jump from each frame may lead to: the most alike ones, as often as they weigh."""
+        """Targets of a jump from each frame: the most similar frames, each as often as its weight."""
         gap = self.settings.separation_s / (self.lag_s / self.lag)
-        found = []
-        for frame, alike in enumerate(self.likeness.distances()):
+        targets = []
+        for frame, distances in enumerate(self.fields.distances()):
             far = self.usable[np.abs(self.usable - frame) >= max(gap * (1 - 1e-9), 1)]
-            found.append(far[np.argsort(alike[far], kind="stable")][: self.settings.neighbours])
-        if min(part.size for part in found) == 0:
+            targets.append(far[np.argsort(distances[far], kind="stable")][: self.settings.neighbours])
+        if min(frames.size for frames in targets) == 0:
             raise DataError(
-                f"recurrence: the window holds no frame {self.settings.separation_s:g} s or more away "
-                "from one of its frames: learn from a longer window or cut separation_s"
+                f"recurrence: a frame of the window has no other {self.settings.separation_s:g} s or more "
+                "away: learn from a longer window or cut separation_s"
             )
-        return found
+        return targets
 
     def arrays(self) -> dict[str, NDArray[Any]]:
         """See `chain.Chain.arrays`."""
@@ -161,20 +161,20 @@ class RecurrenceChain(TracerChain):
             "settings": np.array(numbers, float),
             "places_m": self.places_m,
             "weights": self.weights,
-            "coarse": np.array([self.likeness.coarse.columns, self.likeness.coarse.rows]),
-            "scale": self.likeness.scale,
-            "fields": self.likeness.fields,
+            "coarse": np.array([self.fields.coarse.columns, self.fields.coarse.rows]),
+            "scale": self.fields.scale,
+            "fields": self.fields.fields,
             "report": np.array(json.dumps(self.report)),
         }
 
     @classmethod
     def from_arrays(cls, arrays: dict[str, NDArray[Any]]) -> "RecurrenceChain":
-        """Chain from what `arrays` gave.
+        """Chain from the arrays of `arrays`.
 
         Raises
         ------
         DataError
-            Something is missing.
+            An array is missing.
         """
         try:
             width, height = (float(size) for size in arrays["bed_m"])
@@ -185,13 +185,13 @@ class RecurrenceChain(TracerChain):
                 int(arrays["lag"]),
                 float(arrays["lag_s"]),
                 json.loads(str(arrays["report"])),
-                Settings(str(arrays["order"]), segment, separation, int(neighbours), coarse),
+                RecurrenceSettings(str(arrays["order"]), segment, separation, int(neighbours), coarse),
                 arrays["places_m"],
                 arrays["weights"],
-                Likeness(grids[1], arrays["scale"], arrays["fields"]),
+                FrameFields(grids[1], arrays["scale"], arrays["fields"]),
             )
         except KeyError as error:
-            raise DataError(f"a chain lacks {error}: build the transitions again") from error
+            raise DataError(f"the file of a chain lacks {error}: build the transitions again") from error
 
 
 def learn(
@@ -207,14 +207,14 @@ def learn(
     Parameters
     ----------
     frames, grid, lag, estimator, step_weights
-        As `registry.learn`; the estimator makes no difference, the window does not depend on the grid.
+        As `registry.learn`; the estimator makes no difference, and the paths do not depend on the grid.
     **settings
-        Those of `Settings`: order, segment_s, separation_s, neighbours, coarse_m.
+        Of `RecurrenceSettings`: order, segment_s, separation_s, neighbours, coarse_m.
 
     Returns
     -------
     RecurrenceChain
-        Its report holds the mean distance that jumps lead over, and that of a step, over that of all frames.
+        Its report holds the mean distance of the frames of a jump and of a step, over that of all frames.
     """
     _, weights = step_starts(frames.cells, lag, step_weights=step_weights)
     return relearner(frames, grid, lag, estimator, **settings)(weights)
@@ -223,24 +223,24 @@ def learn(
 def relearner(
     frames: Frames, grid: Grid, lag: int = 1, estimator: str = "pooled", **settings: Any
 ) -> Callable[[NDArray[np.int64]], RecurrenceChain]:
-    """`learn` as a function of ``step_weights`` that has compared the frames; arguments as `learn`."""
-    chosen = Settings(**settings)
-    likeness = compare(frames, grid, chosen.coarse_m)
+    """`learn` as a function of ``step_weights``; frames are compared only once. Arguments as `learn`."""
+    checked = RecurrenceSettings(**settings)
+    fields = frame_fields(frames, grid, checked.coarse_m)
     places = np.stack([np.asarray(frames.x_m, np.float32), np.asarray(frames.z_m, np.float32)])
     note = {"velocities_from_differences_1": float(not measured(frames))}
 
-    def again(weights: NDArray[np.int64]) -> RecurrenceChain:
+    def from_weights(weights: NDArray[np.int64]) -> RecurrenceChain:
         chain = RecurrenceChain(
-            grid, lag, lag * frames.interval_s, note.copy(), chosen, places, weights, likeness
+            grid, lag, lag * frames.interval_s, note.copy(), checked, places, weights, fields
         )
         chain.report |= _report(chain)
         return chain
 
-    return again
+    return from_weights
 
 
 def _report(chain: RecurrenceChain) -> dict[str, float]:
-    between = chain.likeness.distances()
+    between = chain.fields.distances()
     usual = float(np.sqrt((between**2).mean()))
     jumps = [between[frame, targets].mean() for frame, targets in enumerate(chain.targets)]
     return {

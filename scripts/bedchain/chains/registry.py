@@ -1,9 +1,9 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""One interface for every chain: learned from frames, it gives mixing curves, densities and particle paths.
+"""Models by name: functions that learn, save and load chains.
 
-A model is a name in `LEARNERS` and `READERS`. Those that are Markov on some set of states (cells, pairs of
-cells, cells by velocity class) are a `MarkovChain`, which does the rest from its matrix; any other class
-with the methods of `Chain` will do as well. Scripts loop over names and know no model in particular.
+A model is a name in `LEARNERS` and `READERS`. Models that are Markov on a set of states (cells, pairs of
+cells, cells by velocity class) are a `MarkovChain`; a model may be any other class with the methods of
+`Chain`. Scripts loop over names and know no particular model.
 """
 
 from collections.abc import Callable
@@ -22,7 +22,7 @@ from bedchain.files import read_arrays, write_arrays
 from bedchain.trajectory.frames import Frames
 from bedchain.trajectory.grid import Grid
 
-# Each learns from frames and takes the keyword arguments that `learn` passes on.
+# Each takes frames, a grid and the keyword arguments of `learn`.
 LEARNERS: dict[str, Callable[..., Chain]] = {
     "static": static.learn,
     "dynamic": dynamic.learn,
@@ -38,7 +38,7 @@ READERS: dict[str, Callable[[dict[str, NDArray[Any]]], Chain]] = {
     "recurrence": recurrence.RecurrenceChain.from_arrays,
 }
 
-# Optional: for models that learn faster from other weights of the same steps.
+# For models that learn faster from other weights of the same steps.
 RELEARNERS: dict[str, Callable[..., Callable[[NDArray[np.int64]], Chain]]] = {
     "static": static.relearner,
     "velocity_class": velocity_class.relearner,
@@ -79,7 +79,7 @@ def learn(
     Parameters
     ----------
     name : str
-        One of `LEARNERS`.
+        A name in `LEARNERS`.
     frames : Frames
         The learning window.
     grid : Grid
@@ -89,9 +89,9 @@ def learn(
     estimator : {"literal", "per_step", "pooled"}
         How counts become probabilities.
     step_weights : (n_frames - lag,) int array, optional
-        How many times the step starting at each frame counts (bootstrap).
+        How many times the step starting at each frame counts (bootstrap); 1 by default.
     **options
-        Settings of one model only.
+        Settings of this model.
 
     Returns
     -------
@@ -110,9 +110,9 @@ def learn(
 def relearner(
     name: str, frames: Frames, grid: Grid, lag: int = 1, estimator: str = "pooled", **options: Any
 ) -> Callable[[NDArray[np.int64]], Chain]:
-    """`learn` as a function of ``step_weights``, for `bands.block_chains` of one window.
+    """`learn` as a function of ``step_weights``, for `bands.block_chains`; arguments as `learn`.
 
-    Parameters are those of `learn`. A model in `RELEARNERS` counts once for all replicates.
+    Models in `RELEARNERS` count once for all replicates.
 
     Returns
     -------
@@ -125,7 +125,7 @@ def relearner(
 
 
 def save(chain: Chain, path: Path | str) -> None:
-    """Write a chain so that `load` gives it back exactly; the file appears whole or not at all."""
+    """Write a chain for `load`, exactly; the file is complete or not there."""
     write_arrays(path, {"name": np.array(chain.name), **chain.arrays()})
 
 
@@ -135,7 +135,7 @@ def load(path: Path | str) -> Chain:
     Raises
     ------
     DataError
-        The file is not one of a known model.
+        The file holds no chain of a known model.
     """
     arrays = read_arrays(path)
     name = str(arrays.pop("name", ""))

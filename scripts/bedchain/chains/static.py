@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""The static chain: where a particle goes depends on its cell alone (Zhuang et al. 2015, Eq. 1)."""
+"""The static chain: the next cell depends on the present cell alone (Zhuang et al. 2015, Eq. 1)."""
 
 from collections.abc import Callable
 
@@ -39,14 +39,14 @@ def learn(
 def relearner(
     frames: Frames, grid: Grid, lag: int = 1, estimator: str = "pooled"
 ) -> Callable[[NDArray[np.int64]], MarkovChain]:
-    """`learn` as a function of ``step_weights``, counted already; arguments as `registry.relearner`."""
+    """`learn` as a function of ``step_weights``; moves are counted only once. Arguments as `learn`."""
     steps = count_steps(frames.cells, grid.n_cells, lag)
     lag_s = lag * frames.interval_s
     return lambda weights: from_counts(steps.weighted(weights), grid, lag_s, estimator)
 
 
 def from_counts(counts: Counts, grid: Grid, lag_s: float, estimator: str = "pooled") -> MarkovChain:
-    """Static chain from counted (perhaps merged) moves.
+    """Static chain from counted moves.
 
     Parameters
     ----------
@@ -62,7 +62,7 @@ def from_counts(counts: Counts, grid: Grid, lag_s: float, estimator: str = "pool
     Returns
     -------
     MarkovChain
-        State = cell. Its report holds what `report` measures.
+        Its states are the cells; its report is that of `report`, and the rows changed.
     """
     matrix, openings = transition_matrix_with_openings(counts, estimator)
     numbers = report(counts, matrix, estimator) | {
@@ -75,16 +75,15 @@ def from_counts(counts: Counts, grid: Grid, lag_s: float, estimator: str = "pool
 
 
 def report(counts: Counts, matrix: sparse.csr_array, estimator: str) -> dict[str, float]:
-    """How good a static matrix is, by what takes no time to know.
+    """Numbers about a static matrix and its counts.
 
     Returns
     -------
     dict
-        ``row_sum_error_1``: largest distance of a visited row from 1, as estimated, before missing mass
-        stays put;
-        ``leak_1``: share of the particles that go missing in a step, likewise;
+        ``row_sum_error_1``: largest distance of the sum of a visited row from 1, as estimated;
+        ``leak_1``: share of the particles lost in a step, as estimated;
         ``mass_1``: mass after one step of the final matrix from the visited density;
-        ``visited_cells_1``, ``moves_1``, ``entries_1``: what was counted.
+        ``visited_cells_1``, ``moves_1``, ``entries_1``: cells, moves, and entries of the matrix.
     """
     rows = np.asarray(estimated_rows(counts, estimator).sum(axis=1)).ravel()
     density = visited_density(counts)
@@ -100,9 +99,9 @@ def report(counts: Counts, matrix: sparse.csr_array, estimator: str) -> dict[str
 
 
 def compare_estimators(counts: Counts) -> dict[str, dict[str, float]]:
-    """For each estimator its `report`, and ``long_run_total_variation_1``.
+    """`report` of each estimator, and ``long_run_total_variation_1``.
 
-    The latter is the distance of the chain's long-run density from the frames' mean density.
+    The latter is the total variation of the chain's long-run density from the frames' mean density.
     """
     density = visited_density(counts)
     table = {}

@@ -1,9 +1,8 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Models that move tracers and keep their positions: what they give is averaged over runs of the tracers.
+"""Base of the models that move tracers and keep their positions; they have no transition matrix.
 
-They have no transition matrix. What `chain.Chain` calls expected values is, for them, a mean over whole runs
-of tracers with a fixed seed: repeatable, and off the expectation by what so many tracers and paths leave to
-chance.
+The expected values of `chain.Chain` are, for these models, means over runs of tracers with a fixed seed. They
+are repeatable, and differ from the expectation by the sampling error of so many tracers and paths.
 """
 
 from abc import ABC, abstractmethod
@@ -17,39 +16,39 @@ from bedchain.measures import mixing
 from bedchain.trajectory.frames import Frames
 from bedchain.trajectory.grid import Grid
 
-# Seed of the runs that stand for expected values.
+# Seed of the runs for expected values.
 SEED = 62015
-# Tracers that expected mixing curves are made of: the share of half of them is off by 0.003 by chance.
+# Tracers for expected mixing curves: a share of half of them has a standard error of 0.003.
 EXPECTED_TRACERS = 50_000
-# Time after which a bed has forgotten its start, and as long again over which the density is averaged.
+# Time for a bed to forget its start, and time over which the density is averaged after it.
 LONG_RUN_S = 20.0
-# Tracers followed for the long-run density: every k-th particle.
+# Approximate number of tracers for the long-run density: every k-th particle.
 LONG_RUN_TRACERS = 10_000
 
 Place = tuple[NDArray[np.float64], NDArray[np.float64]]
 
 
 class TracerChain(ABC):
-    """What position-keeping models share; each tells how its tracers go by `walk`.
+    """Model that keeps the positions of tracers; each subclass moves them by its `walk`.
 
     Attributes
     ----------
     expected_paths : int
-        Runs whose mean stands for expected values. 1 where tracers are independent: each particle is then
-        run as many times at once as make `EXPECTED_TRACERS`.
+        Runs averaged for expected values. 1 where tracers are independent: particles are then copied until
+        there are `EXPECTED_TRACERS`.
 
     Parameters
     ----------
     name : str
         Name of the model.
     grid : Grid
-        Cells in which densities and paths are given.
+        Cells of the densities and paths.
     lag : int
         Frames in a step.
     lag_s : float
         The same [s].
     report : dict of str to float
-        What learning found.
+        Numbers about the learning.
     """
 
     expected_paths = 1
@@ -69,13 +68,13 @@ class TracerChain(ABC):
         steps: int,
         rng: np.random.Generator | None = None,
     ) -> NDArray[np.float64]:
-        """See `chain.Chain.mixing`; positions decide at every step, no cell is cut."""
+        """See `chain.Chain.mixing`; the side of a tracer follows from its position at every step."""
         mixing.side_shares(self.grid, split_x_m, split_z_m)  # refuses lines outside the bed
         generators = [rng] if rng is not None else self._expected()
         if rng is None:
             n = start.cells.shape[1]
-            alike = EXPECTED_TRACERS // self.expected_paths
-            start = _chosen(start, self._copies(n) if n < alike else np.arange(0, n, n // alike))
+            tracers = EXPECTED_TRACERS // self.expected_paths
+            start = _chosen(start, self._copies(n) if n < tracers else np.arange(0, n, n // tracers))
         marked = mixing.sides(np.asarray(start.x_m[-1]), np.asarray(start.z_m[-1]), split_x_m, split_z_m)
         size = marked.sum(axis=1)
         still = np.zeros((steps + 1, 4))
@@ -96,7 +95,7 @@ class TracerChain(ABC):
         rng: np.random.Generator | None = None,
     ) -> NDArray[np.float64] | NDArray[np.int64]:
         """See `chain.Chain.densities`."""
-        wanted = np.asarray(steps, np.int64)
+        step_numbers = np.asarray(steps, np.int64)
         n = marked.shape[1]
         total = np.zeros((len(steps), len(marked), self.grid.n_cells), np.int64)
         generators = [rng] if rng is not None else self._expected()
@@ -104,8 +103,8 @@ class TracerChain(ABC):
             copies = self._copies(start.cells.shape[1])
             start, marked = _chosen(start, copies), marked[:, copies]
         for generator in generators:
-            for step, cells in enumerate(self.paths(start, int(wanted.max()), generator)):
-                if (places := wanted == step).any():
+            for step, cells in enumerate(self.paths(start, int(step_numbers.max()), generator)):
+                if (places := step_numbers == step).any():
                     total[places] += mixing.marked_histogram(cells, marked, self.grid.n_cells)
         return total if rng is not None else total / (len(generators) * marked.shape[1] / n)
 
@@ -115,7 +114,7 @@ class TracerChain(ABC):
             yield self.grid.cell_of(x, z)
 
     def long_run_density(self, start: Frames) -> NDArray[np.float64]:
-        """See `chain.Chain.long_run_density`: the mean over steps of a long run of some of the particles."""
+        """See `chain.Chain.long_run_density`; mean over the steps of a long run of some of the particles."""
         n = start.cells.shape[1]
         some = _chosen(start, np.arange(0, n, max(1, n // LONG_RUN_TRACERS)))
         steps = max(int(np.ceil(LONG_RUN_S / self.lag_s)), 1)
@@ -129,9 +128,9 @@ class TracerChain(ABC):
         return np.random.default_rng(SEED).spawn(self.expected_paths)
 
     def _copies(self, n_particles: int) -> NDArray[np.int64]:
-        """Every particle once, or as often as chance needs."""
-        often = 1 if self.expected_paths > 1 else -(-EXPECTED_TRACERS // n_particles)
-        return np.tile(np.arange(n_particles), often)
+        """Numbers of the particles, repeated until there are `EXPECTED_TRACERS` (independent tracers)."""
+        copies = 1 if self.expected_paths > 1 else -(-EXPECTED_TRACERS // n_particles)
+        return np.tile(np.arange(n_particles), copies)
 
 
 def start_places(start: Frames, grid: Grid) -> Place:
@@ -144,7 +143,7 @@ def start_places(start: Frames, grid: Grid) -> Place:
     """
     x, z = np.asarray(start.x_m[-1]), np.asarray(start.z_m[-1])
     grid.cell_of(x, z)
-    # A wall stored in float32 may lie a hair outside.
+    # A position at a wall may be slightly outside in float32.
     return np.minimum(x.astype(np.float64), grid.width_m), np.minimum(z.astype(np.float64), grid.height_m)
 
 
@@ -159,7 +158,7 @@ def reflect(place: NDArray[np.float64], top: float) -> None:
 
 @njit(cache=True)
 def _still(x, z, marked, split_x_m, split_z_m):  # type: ignore[no-untyped-def]
-    """Particles of each group that are on its side."""
+    """Particles of each group that are on its side, (4,)."""
     total = np.zeros(4)
     for p in range(x.size):
         left, low = x[p] < split_x_m, z[p] < split_z_m
@@ -171,7 +170,7 @@ def _still(x, z, marked, split_x_m, split_z_m):  # type: ignore[no-untyped-def]
 
 
 def _chosen(frames: Frames, particles: NDArray[np.int64]) -> Frames:
-    """The last two frames of some particles, in a new order."""
+    """The last two frames of the given particles, in their order."""
     last = frames.part(slice(max(0, len(frames.times_s) - 2), None))
     x, z, cells = np.asarray(last.x_m), np.asarray(last.z_m), np.asarray(last.cells)
     vx, vz = (None if v is None else np.asarray(v)[:, particles] for v in (last.vx_m_s, last.vz_m_s))

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Velocities of particles, and classes of them that hold equally many particles each."""
+"""Velocities of particles, and velocity classes of equally many particles."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass
@@ -11,21 +11,21 @@ from numpy.typing import NDArray
 from bedchain.errors import DataError
 from bedchain.trajectory.frames import Frames
 
-# Quantiles are taken of about this many velocities: as good as of all, for a fraction of the time.
+# Quantiles are taken of about this many velocities: as accurate as of all, in a fraction of the time.
 QUANTILE_SAMPLES = 1_000_000
 
 
 def measured(frames: Frames) -> bool:
-    """Whether the frames hold velocities: None or NaN stand for none."""
-    given = (frames.vx_m_s, frames.vz_m_s)
-    return all(array is not None and not np.isnan(array[-1]).any() for array in given)
+    """True if the frames hold velocities; None or NaN are none."""
+    velocity = (frames.vx_m_s, frames.vz_m_s)
+    return all(part is not None and not np.isnan(part[-1]).any() for part in velocity)
 
 
 def velocities(frames: Frames) -> tuple[NDArray[np.floating], NDArray[np.floating]]:
-    """Velocities of the frames or, where they hold none, differences of positions.
+    """Velocities of the frames or, where they hold none, from differences of positions.
 
-    A difference is that from the frame before over the time between both; the first frame has none before
-    it and takes that of the second.
+    A difference is taken from the frame before, over the time between the two frames; the first frame has
+    the velocities of the second.
 
     Returns
     -------
@@ -42,8 +42,8 @@ def velocities(frames: Frames) -> tuple[NDArray[np.floating], NDArray[np.floatin
         return frames.vx_m_s, frames.vz_m_s
     if len(frames.times_s) < 2:
         raise DataError(
-            "a single frame without velocities: give one frame more before it, their difference takes "
-            "the velocity's place, or write the frames with velocities"
+            "a single frame without velocities: give the frame before it too, for velocities from "
+            "differences of positions, or write the frames with velocities"
         )
     vx, vz = (np.diff(place, axis=0) / frames.interval_s for place in (frames.x_m, frames.z_m))
     return np.concatenate((vx[:1], vx)), np.concatenate((vz[:1], vz))
@@ -51,16 +51,16 @@ def velocities(frames: Frames) -> tuple[NDArray[np.floating], NDArray[np.floatin
 
 @dataclass(frozen=True)
 class VelocityClasses:
-    """Classes of the velocity along x times those along z; class = class along x * n_z + class along z.
+    """Classes of the velocity (vx, vz), numbered ``class along x * n_z + class along z``.
 
-    With ``back`` frames the velocity so many frames earlier counts too: class now * n_x n_z + class then.
+    With ``back`` > 0 the velocity so many frames earlier counts too: present class * n_x n_z + earlier class.
 
     Parameters
     ----------
     edges_x_m_s, edges_z_m_s : (n_x - 1,), (n_z - 1,) array
-        Rising velocities that part the classes [m/s]; an edge belongs to the class above it.
+        Rising velocities between the classes [m/s]; an edge belongs to the class above it.
     back : int
-        Frames between the velocity now and the earlier one; 0 for none.
+        Frames between the earlier and the present velocity [1]; 0 for the present one alone.
     """
 
     edges_x_m_s: NDArray[np.float64]
@@ -70,23 +70,23 @@ class VelocityClasses:
     @property
     def number(self) -> int:
         """Number of classes, n_x n_z or its square [1]."""
-        return self._of_one * (self._of_one if self.back else 1)
+        return self._n_present * (self._n_present if self.back else 1)
 
     @property
-    def _of_one(self) -> int:
+    def _n_present(self) -> int:
         return (self.edges_x_m_s.size + 1) * (self.edges_z_m_s.size + 1)
 
     def arrays(self) -> dict[str, NDArray[Any]]:
-        """All that `from_arrays` needs."""
+        """The classes as plain arrays, for `from_arrays`."""
         return {"edges_x": self.edges_x_m_s, "edges_z": self.edges_z_m_s, "back": np.array(self.back)}
 
     @classmethod
     def from_arrays(cls, arrays: dict[str, NDArray[Any]]) -> "VelocityClasses":
-        """Classes from what `arrays` gave."""
+        """Classes from the arrays of `arrays`."""
         return cls(arrays["edges_x"], arrays["edges_z"], int(arrays["back"]))
 
     def of(self, frames: Frames) -> NDArray[np.int32]:
-        """Class of each particle in each frame that ``back`` frames lead up to, by `velocities`.
+        """Class of each particle in each frame from number ``back`` on, by `velocities`.
 
         Returns
         -------
@@ -98,12 +98,12 @@ class VelocityClasses:
             along_z = np.searchsorted(self.edges_z_m_s, vz, side="right")
             classes[row] = along_x * (self.edges_z_m_s.size + 1) + along_z
         if self.back:
-            return np.asarray(classes[self.back :] * np.int32(self._of_one) + classes[: -self.back])
+            return np.asarray(classes[self.back :] * np.int32(self._n_present) + classes[: -self.back])
         return classes
 
 
 def quantile_classes(frames: Frames, number: Sequence[int], back: int = 0) -> VelocityClasses:
-    """Classes of equally many particles along each axis, over all frames of a window.
+    """Classes with equally many particles along each axis, over all frames of a window.
 
     Parameters
     ----------
@@ -128,7 +128,7 @@ def quantile_classes(frames: Frames, number: Sequence[int], back: int = 0) -> Ve
     stride = max(1, frames.cells.size // QUANTILE_SAMPLES)
     edges = []
     for values, n in zip(velocities(frames), number, strict=True):
-        # An odd step through the particles of each frame, shifted from frame to frame, sees all of them.
+        # Every stride-th particle, beginning at another particle in each frame: all particles are sampled.
         sample = np.concatenate([now[frame % stride :: stride] for frame, now in enumerate(values)])
         edges.append(np.quantile(sample.astype(np.float64), np.arange(1, n) / n))
     return VelocityClasses(edges[0], edges[1], back)

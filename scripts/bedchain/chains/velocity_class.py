@@ -1,13 +1,12 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """The velocity-class chain: the next cell and velocity depend on the present cell and velocity.
 
-A state is a cell times a class of the velocity (vx, vz), classes of equally many particles each over the
-whole learning window. Assumed: within a class the velocity does not matter, what was before the present
-velocity does not matter, and positions are even in a cell. Where particles soon turn back, as between the
-bubbles of a narrow bed, the second makes them mix too fast: with ``earlier_s`` the class of the velocity so
-long ago is part of the state too, at the price of as many more states (3 x 3 classes twice are 81). States
-with few samples move as any particle of their cell does, whatever its velocity, so that the matrix stays
-sparse and conservative.
+A state is a cell and a class of the velocity (vx, vz); each class has equally many particles over the whole
+learning window. Assumed: within a class the velocity does not matter, earlier velocities do not matter, and
+particles are spread evenly over a cell. Where particles soon turn back, as between the bubbles of a narrow
+bed, the second assumption makes them mix too fast: with ``earlier_s`` the class of the velocity so long ago
+is part of the state too, with as many more states (3 x 3 classes twice are 81). States with few samples move
+as any particle of their cell does, so that the matrix stays sparse and conservative.
 """
 
 from collections.abc import Callable, Sequence
@@ -19,7 +18,7 @@ from scipy import sparse
 
 from bedchain.chains.classes import open_classes
 from bedchain.chains.counting import Counts, count_moves, step_starts
-from bedchain.chains.estimators import leak, transition_matrix
+from bedchain.chains.estimators import leak, transition_matrix, with_sorted_rows
 from bedchain.chains.markov_chain import MarkovChain
 from bedchain.chains.velocity_binning import VelocityClasses, measured, quantile_classes
 from bedchain.errors import DataError
@@ -27,7 +26,7 @@ from bedchain.trajectory.frames import Frames, lag_frames
 from bedchain.trajectory.grid import Grid
 
 CLASSES = (3, 3)
-# States with fewer samples move as their cell does: the shares of their few moves would be off by a third.
+# States with fewer samples move as their cell does: their own shares would have errors of a third.
 FEWEST_SAMPLES = 10
 
 
@@ -46,13 +45,14 @@ def learn(
     Parameters
     ----------
     frames, grid, lag, estimator, step_weights
-        As `registry.learn`. The edges of the classes are those of the window, whatever its steps weigh.
+        As `registry.learn`. The edges of the classes do not depend on the weights.
     classes : (n_x, n_z)
         Classes of the velocity along x and z [1].
     fewest_samples : int
-        States seen less often than this move as any particle of their cell does [1].
+        States with fewer samples move as any particle of their cell does [1].
     earlier_s : float
-        The class of the velocity so long ago counts too, a multiple of the frame interval [s]; 0 for none.
+        Time before the present at which the velocity counts too, a multiple of the frame interval [s]; 0 for
+        the present velocity alone.
 
     Returns
     -------
@@ -71,7 +71,7 @@ def relearner(
     fewest_samples: int = FEWEST_SAMPLES,
     earlier_s: float = 0.0,
 ) -> Callable[[NDArray[np.int64]], MarkovChain]:
-    """`learn` as a function of ``step_weights`` that knows all states already; arguments as `learn`."""
+    """`learn` as a function of ``step_weights``; states are computed only once. Arguments as `learn`."""
     back = lag_frames(earlier_s, frames.interval_s) if earlier_s else 0
     if len(frames.times_s) - lag <= back:
         raise DataError(
@@ -82,12 +82,12 @@ def relearner(
     n_states, lag_s = grid.n_cells * edges.number, lag * frames.interval_s
     note = {"velocities_from_differences_1": float(not measured(frames))}
 
-    def again(weights: NDArray[np.int64]) -> MarkovChain:
+    def from_weights(weights: NDArray[np.int64]) -> MarkovChain:
         counts = count_moves(states, n_states, lag, step_weights=weights[back:])
         chain = from_counts(counts, edges, grid, lag_s, estimator, fewest_samples)
         return replace(chain, report=chain.report | note)
 
-    return again
+    return from_weights
 
 
 def from_counts(
@@ -103,23 +103,23 @@ def from_counts(
     Parameters
     ----------
     counts : Counts
-        From `counting.count_moves`, with states ``cell * classes.number + class`` in the place of cells.
+        From `counting.count_moves`, with states ``cell * classes.number + class`` for cells.
     classes : VelocityClasses
     grid : Grid
         The cells.
     lag_s : float
         Length of a step [s].
     estimator : {"literal", "per_step", "pooled"}
-        How counts become probabilities, but for the rows of whole cells, which are pooled.
+        How counts become probabilities; the rows of whole cells are always pooled.
     fewest_samples : int
-        States with fewer samples are one state with the others of their cell [1].
+        States with fewer samples move as any particle of their cell does [1].
 
     Returns
     -------
     MarkovChain
-        Its states are those with enough samples, and after them one for each cell, which moves as all of the
-        cell's particles do: thin states, all with that row, need not be told apart. Its report holds how many
-        of the visited states were thin, and which share of all moves began in one of them: what falls back.
+        Its states are those with enough samples, followed by one state for each cell, which moves as all
+        particles of the cell do and stands for the cell's thin states (too few samples). Its report holds the
+        share of thin states among the visited ones, and the share of all moves that began in thin states.
 
     Raises
     ------
@@ -137,21 +137,15 @@ def from_counts(
     place = kept.size + cell.astype(np.int64)
     place[kept] = np.arange(kept.size)
     onto = _ones(np.arange(n_states), place, (n_states, kept.size + grid.n_cells))
-    of_cells = _ones(cell, np.arange(n_states), (grid.n_cells, n_states)) @ counts.moves @ onto
-    shares = (transition_matrix(counts, estimator, False)[kept] @ onto, _shares(of_cells, kept.size))
+    cell_moves = _ones(cell, np.arange(n_states), (grid.n_cells, n_states)) @ counts.moves @ onto
+    shares = (transition_matrix(counts, estimator, False)[kept] @ onto, _shares(cell_moves, kept.size))
     matrix, returned = sparse.csr_array(sparse.vstack(shares, format="csr")), np.zeros(0, np.int64)
     if estimator != "literal":
-        # Each move once: those of thin states in the rows of their cells.
+        # Each move once: moves from thin states in the rows of their cells.
         moves = sparse.csr_array(onto.T @ counts.moves @ onto)
         matrix, returned = open_classes(matrix, replace(counts, moves=moves))
-    index = (matrix.indices.astype(np.int32), matrix.indptr.astype(np.int32))
-    matrix = sparse.csr_array((matrix.data, *index), shape=matrix.shape)
-    matrix.sort_indices()
-    seen = float((visits > 0).sum())
-    report = {
-        "states_1": seen,
-        "thin_state_share_1": 1 - kept.size / seen,
-        "fallback_share_1": 1 - float(visits[kept].sum() / visits.sum()),
+    matrix = with_sorted_rows(matrix)
+    report = _report(visits, kept) | {
         "leak_1": leak(counts) if estimator == "literal" else 0.0,
         "states_returned_1": float(returned.size),
         "moves_1": float(visits.sum()),
@@ -163,10 +157,20 @@ def from_counts(
     )
 
 
+def _report(visits: NDArray[np.int64], kept: NDArray[np.int64]) -> dict[str, float]:
+    """Numbers of visited and of thin states, and the share of the moves that begin in thin states."""
+    visited = float((visits > 0).sum())
+    return {
+        "states_1": visited,
+        "thin_state_share_1": 1 - kept.size / visited,
+        "fallback_share_1": 1 - float(visits[kept].sum() / visits.sum()),
+    }
+
+
 def _states(
     frames: Frames, grid: Grid, classes: Sequence[int], back: int
 ) -> tuple[VelocityClasses, NDArray[np.int32]]:
-    """Classes of a window, and the state of each particle in each frame that ``back`` lead up to."""
+    """Classes of a window, and the state of each particle in each frame from number ``back`` on."""
     edges = quantile_classes(frames, classes, back)
     if grid.n_cells * edges.number > np.iinfo(np.int32).max:
         raise DataError(f"{grid.n_cells} cells by {edges.number} classes: state numbers must fit in int32")
@@ -179,12 +183,12 @@ def _states(
 def _ones(
     rows: NDArray[np.integer], columns: NDArray[np.integer], shape: tuple[int, int]
 ) -> sparse.csr_array:
-    """Matrix of ones at some places, which adds up the states that share a row or a column."""
+    """Matrix of ones at the given places: a product with it sums states with the same row or column."""
     return sparse.csr_array(sparse.coo_array((np.ones(rows.size, np.int64), (rows, columns)), shape=shape))
 
 
 def _shares(moves: sparse.csr_array, first: int) -> sparse.csr_array:
-    """Shares of the moves of each cell; one never left stays in its own state, number ``first + cell``."""
+    """Shares of the moves of each cell; cells never left stay in their state, number ``first + cell``."""
     total = np.asarray(moves.sum(axis=1)).ravel()
     never = np.flatnonzero(total == 0)
     stay = sparse.coo_array((np.ones(never.size), (never, first + never)), shape=moves.shape)

@@ -1,11 +1,11 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""What the paper claims, cases/<case>/claims.csv, against what came out."""
+"""Claims of the paper, cases/<case>/claims.csv, beside the measured values."""
 
 from pathlib import Path
 
 import pandas as pd
 
-from bedchain.comparison.expected import read_expected
+from bedchain.comparison.expected import read_expected, with_measured
 from bedchain.comparison.metrics import Metric, metric
 from bedchain.errors import UserError
 
@@ -19,7 +19,7 @@ def read_claims(file: Path) -> pd.DataFrame:
     Parameters
     ----------
     file : Path
-        Columns of `expected.read_expected`, and claim, where (in the paper), why (it holds, or not).
+        Columns of `expected.read_expected`, and claim, where (in the paper), why (the reason of the result).
 
     Returns
     -------
@@ -28,21 +28,21 @@ def read_claims(file: Path) -> pd.DataFrame:
     Raises
     ------
     UserError
-        As `expected.read_expected`.
+        As `expected.read_expected`, or a claim lacks a text.
     """
     table = read_expected(file)
     if missing := [name for name in TEXTS if name not in table or table[name].isna().any()]:
-        raise UserError(f"{file}: each claim needs {', '.join(missing)}; add what is missing")
+        raise UserError(f"{file}: each claim needs {', '.join(missing)}; add the missing texts")
     return table
 
 
 def agreement(claims: pd.DataFrame, metrics: pd.DataFrame) -> pd.DataFrame:
-    """Each claim with its number, ours, and whether they agree.
+    """Each claim with the paper's number and ours, and their agreement.
 
     Parameters
     ----------
     claims : DataFrame
-        Of `read_claims`.
+        From `read_claims`.
     metrics : DataFrame
         quantity, source, value, unit.
 
@@ -54,23 +54,19 @@ def agreement(claims: pd.DataFrame, metrics: pd.DataFrame) -> pd.DataFrame:
     Raises
     ------
     UserError
-        What a claim is about was not measured, or in another unit.
+        The quantity of a claim was not measured, or in another unit.
     """
-    found = claims.merge(
-        metrics.astype({"unit": str}), "left", ["quantity", "source", "unit"], suffixes=("", "_found")
-    )
-    if (lost := found["value_found"].isna()).any():
-        row = found[lost].iloc[0]
+    table = with_measured(claims, metrics)
+    if (missing := table["measured"].isna()).any():
+        row = table[missing].iloc[0]
         raise UserError(f"claim {row.claim!r}: no {row.quantity} of {row.source} in {row.unit} was measured")
-    within = (found["value_found"] - found["value"]).abs() <= found["tolerance"]
-    found = found.assign(within=within.map({True: "yes", False: "no"}))
-    found = found.rename(columns={"value": "paper", "value_found": "ours"})
+    table["within"] = table["within"].map({True: "yes", False: "no"})
     columns = ["claim", "where", "quantity", "source", "paper", "ours", "unit", "tolerance", "within", "why"]
-    return found[columns]
+    return table.rename(columns={"value": "paper", "measured": "ours"})[columns]
 
 
 def swing_metrics(mixing: pd.DataFrame) -> list[Metric]:
-    """How restless the curves of the chains are: the length of their ups and downs over that of the DEM's.
+    """Sum of the absolute changes of each chain's curve, over that of the DEM's curve.
 
     Parameters
     ----------
@@ -80,7 +76,7 @@ def swing_metrics(mixing: pd.DataFrame) -> list[Metric]:
     Returns
     -------
     list of dict
-        swings_over_dem of each group and source; the DEM is looked at at the same times.
+        swings_over_dem of each group and source; the DEM's curve is taken at the times of the chain's.
     """
     curves = {
         key: rows.set_index("time_s")["fraction_remaining_1"]
@@ -109,15 +105,15 @@ def cost_metrics(timing: pd.DataFrame, models: list[str]) -> list[Metric]:
     Returns
     -------
     list of dict
-        dem_time; for each model dem_over_chain_time (learned and run by Monte Carlo) and, but for the static
-        one, <model>_over_static_time (of counts and matrix).
+        dem_time; for each model dem_over_chain_time (learning and a Monte Carlo run) and, except for the
+        static model, <model>_over_static_time (counts and matrix).
     """
     wall = timing.set_index("stage")["wall_s"]
-    learned = {model: wall[f"{model}_count"] + wall[f"{model}_matrix"] for model in models}
+    learning = {model: wall[f"{model}_count"] + wall[f"{model}_matrix"] for model in models}
     rows = [metric("dem_time", "dem", wall["dem"] / SECONDS_PER_HOUR, "h")]
     for model in models:
-        run = learned[model] + wall[f"{model}_monte_carlo"]
-        rows.append(metric("dem_over_chain_time", model, wall["dem"] / run))
+        chain = learning[model] + wall[f"{model}_monte_carlo"]
+        rows.append(metric("dem_over_chain_time", model, wall["dem"] / chain))
         if model != "static" and "static" in models:
-            rows.append(metric(f"{model}_over_static_time", model, learned[model] / learned["static"]))
+            rows.append(metric(f"{model}_over_static_time", model, learning[model] / learning["static"]))
     return rows

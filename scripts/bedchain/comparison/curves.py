@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Mixing curves in long form (mixing.csv), and how two of them differ."""
+"""Mixing curves as rows of mixing.csv, and the errors of a curve."""
 
 from dataclasses import dataclass
 from pathlib import Path
@@ -21,7 +21,7 @@ def curves_of(table: pd.DataFrame, source: str, n_times: int) -> NDArray[np.floa
         time_s, source, direction, group, fraction_remaining_1.
     source : str
     n_times : int
-        Times that the curves must have.
+        Number of times that the curves must have.
 
     Returns
     -------
@@ -31,7 +31,7 @@ def curves_of(table: pd.DataFrame, source: str, n_times: int) -> NDArray[np.floa
     Raises
     ------
     UserError
-        The source is missing, or has other times.
+        The source is missing, or has another number of times.
     """
     rows = table[table["source"] == source]
     columns = [rows[rows["group"] == group].sort_values("time_s") for _, group in GROUPS]
@@ -95,7 +95,7 @@ def curve_table(times_s: np.ndarray, source: str, remaining: np.ndarray) -> pd.D
 
 
 def curve_errors(model: np.ndarray, dem: np.ndarray) -> dict[str, np.ndarray]:
-    """Numbers that sum up how curves differ from the DEM's.
+    """Signed mean, rms and final value of the errors of curves against the DEM's.
 
     Parameters
     ----------
@@ -107,7 +107,7 @@ def curve_errors(model: np.ndarray, dem: np.ndarray) -> dict[str, np.ndarray]:
     Returns
     -------
     dict of str to (..., 4) ndarray
-        error_signed, error_rms, crossed_end [1].
+        error_signed and error_rms over the times, and crossed_end, the share that has crossed at the end [1].
     """
     error = model[..., 1:, :] - dem[1:]
     return {

@@ -1,8 +1,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""What a bed says of its chains, as rows of one long table: diagnostics.csv."""
+"""Properties of a bed and of its chains, as rows of diagnostics.csv."""
 
 from collections.abc import Iterable, Sequence
-from typing import Any
 
 import numpy as np
 import pandas as pd
@@ -14,49 +13,30 @@ from bedchain.chains.estimators import ESTIMATORS, estimated_rows, visited_densi
 from bedchain.chains.markov_chain import MarkovChain
 from bedchain.chains.matrix_analysis import mixing_time
 from bedchain.chains.passage import arrived, passage_time, residence_in_cells
+from bedchain.comparison.metrics import Metric, metric
 from bedchain.measures.batch import total_variation
 from bedchain.measures.dispersion import dispersion_by_height
 from bedchain.measures.mixing import lacey_index
 from bedchain.trajectory.frames import Frames, Lag
 from bedchain.trajectory.grid import Grid
 
-Row = dict[str, Any]
+# part: a group, a direction, an estimator or a number
 COLUMNS = (
     *("quantity", "source", "lag_s", "time_s", "height_m", "part"),
     *("value", "unit", "ci_low", "ci_high"),
 )
-# a variance of fewer displacements says nothing of a layer
+# layers with fewer displacements have no dispersion coefficient
 FEWEST_DISPLACEMENTS = 100
-# the groups whose spreading Lacey's index follows, by direction
-FOLLOWED = {"radial": 0, "axial": 2}
+# marked groups of Lacey's index, by direction
+MARKED = {"radial": 0, "axial": 2}
 
 
-def row(quantity: str, source: str, value: float, unit: str = "1", **where: Any) -> Row:
-    """One row of diagnostics.csv.
-
-    Parameters
-    ----------
-    quantity, source : str
-    value : float
-        In ``unit``.
-    unit : str
-    **where
-        Any of lag_s, time_s, height_m, part (group, direction, estimator, number), ci_low, ci_high.
-
-    Returns
-    -------
-    dict
-    """
-    empty = dict.fromkeys(COLUMNS, np.nan) | {"part": ""}
-    return empty | {"quantity": quantity, "source": source, "value": float(value), "unit": unit} | where
-
-
-def table(rows: Iterable[Row]) -> pd.DataFrame:
+def table(rows: Iterable[Metric]) -> pd.DataFrame:
     """Rows as a table with the columns of diagnostics.csv."""
     return pd.DataFrame(list(rows), columns=list(COLUMNS))
 
 
-def estimator_rows(frames: Frames, grid: Grid, lag: int, models: Sequence[str]) -> list[Row]:
+def estimator_rows(frames: Frames, grid: Grid, lag: int, models: Sequence[str]) -> list[Metric]:
     """Row sums, leak and long-run density of each estimator, for the static and the dynamic chain.
 
     Parameters
@@ -67,38 +47,38 @@ def estimator_rows(frames: Frames, grid: Grid, lag: int, models: Sequence[str]) 
     lag : int
         Frames in a step.
     models : sequence of str
-        Others than ``static`` and ``dynamic`` are passed over.
+        Names other than ``static`` and ``dynamic`` are ignored.
 
     Returns
     -------
     list of dict
-        row_sum_error, leak, long_run_total_variation from the frames' mean density; part = estimator.
+        row_sum_error, leak, long_run_total_variation (from the frames' mean density); part = estimator.
     """
     single = count_moves(frames.cells, grid.n_cells, lag)
-    found = {"static": static.compare_estimators(single)} if "static" in models else {}
+    reports = {"static": static.compare_estimators(single)} if "static" in models else {}
     if "dynamic" in models:
         double = count_pairs(frames.cells, grid.n_cells, lag)
         visited = double.visits > 0
-        found["dynamic"] = {}
+        reports["dynamic"] = {}
         for estimator in ESTIMATORS:
             sums = np.asarray(estimated_rows(double, estimator).sum(axis=1)).ravel()[visited]
             chain = dynamic.from_counts(double, single, grid, lag * frames.interval_s, estimator)
-            found["dynamic"][estimator] = chain.report | {
+            reports["dynamic"][estimator] = chain.report | {
                 "row_sum_error_1": float(np.abs(sums - 1).max()),
                 "long_run_total_variation_1": total_variation(
                     chain.long_run_density(frames), visited_density(single)
                 ),
             }
     return [
-        row(name, model, values[f"{name}_1"], lag_s=lag * frames.interval_s, part=estimator)
-        for model, by_estimator in found.items()
+        metric(name, model, values[f"{name}_1"], lag_s=lag * frames.interval_s, part=estimator)
+        for model, by_estimator in reports.items()
         for estimator, values in by_estimator.items()
         for name in ("row_sum_error", "leak", "long_run_total_variation")
     ]
 
 
-def time_rows(chain: MarkovChain, start: NDArray[np.float64], least_share: float, top: int) -> list[Row]:
-    """Mixing time, residence times and time of passage from the bottom to the top.
+def time_rows(chain: MarkovChain, start: NDArray[np.float64], least_share: float, top: int) -> list[Metric]:
+    """Mixing time, residence times and passage time from the bottom to the top.
 
     Parameters
     ----------
@@ -106,7 +86,7 @@ def time_rows(chain: MarkovChain, start: NDArray[np.float64], least_share: float
     start : (n_states,) array
         Particles in each state at the start [1].
     least_share : float
-        Cells that hold less in the long run do not count for the residence times [1]: one particle.
+        Least long-run share of a cell that counts for the residence times: that of one particle [1].
     top : int
         Row of cells to reach from the bottom row.
 
@@ -130,25 +110,25 @@ def time_rows(chain: MarkovChain, start: NDArray[np.float64], least_share: float
     passage = passage_time(chain, start, top)
     if np.isfinite(passage):
         height = top * chain.grid.cell_height_m
-        rows.append(row("first_passage_time", chain.name, passage, "s", height_m=height, **where))
+        rows.append(metric("first_passage_time", chain.name, passage, "s", height_m=height, **where))
     return rows
 
 
-def arrival_row(source: str, frames: Frames, grid: Grid, top: int) -> Row:
-    """Share of the bottom row's particles that have been in a row or above it by the end of the frames."""
+def arrival_row(source: str, frames: Frames, grid: Grid, top: int) -> Metric:
+    """Share of the bottom row's particles that reach the row ``top`` by the end of the frames."""
     share = arrived(frames.cells, grid, top)[-1]
     length = float(frames.times_s[-1] - frames.times_s[0])
-    return row("first_passage_share", source, share, time_s=length, height_m=top * grid.cell_height_m)
+    return metric("first_passage_share", source, share, time_s=length, height_m=top * grid.cell_height_m)
 
 
-def dispersion_rows(source: str, frames: Frames, grid: Grid, lags: Sequence[int]) -> list[Row]:
+def dispersion_rows(source: str, frames: Frames, grid: Grid, lags: Sequence[int]) -> list[Metric]:
     """Dispersion coefficients of each row of cells, at several lags.
 
     Parameters
     ----------
     source : str
     frames : Frames
-        Of the DEM, or of a chain with particles in the middles of their cells.
+        Of the DEM, or of a chain with particles in the centres of their cells.
     grid : Grid
     lags : sequence of int
         Frames in a displacement.
@@ -156,20 +136,20 @@ def dispersion_rows(source: str, frames: Frames, grid: Grid, lags: Sequence[int]
     Returns
     -------
     list of dict
-        dispersion_x and dispersion_z [m2/s], where enough displacements begin.
+        dispersion_x and dispersion_z [m2/s] of layers with `FEWEST_DISPLACEMENTS`.
     """
     rows = []
     for lag in lags:
         lag_s = lag * frames.interval_s
-        found = dispersion_by_height(frames.x_m, frames.z_m, grid.z_edges_m, Lag(lag, lag_s))
-        for layer in np.flatnonzero(found.displacements >= FEWEST_DISPLACEMENTS):
+        layers = dispersion_by_height(frames.x_m, frames.z_m, grid.z_edges_m, Lag(lag, lag_s))
+        for layer in np.flatnonzero(layers.displacements >= FEWEST_DISPLACEMENTS):
             for column, axis in enumerate("xz"):
-                value, where = found.dispersion_m2_s[layer, column], {"height_m": found.height_m[layer]}
-                rows.append(row(f"dispersion_{axis}", source, value, "m2/s", lag_s=lag_s, **where))
+                value, where = layers.dispersion_m2_s[layer, column], {"height_m": layers.height_m[layer]}
+                rows.append(metric(f"dispersion_{axis}", source, value, "m2/s", lag_s=lag_s, **where))
     return rows
 
 
-def lacey_rows(source: str, times_s: NDArray[np.float64], numbers: np.ndarray) -> list[Row]:
+def lacey_rows(source: str, times_s: NDArray[np.float64], numbers: np.ndarray) -> list[Metric]:
     """Lacey's index of the left and of the low particles over time.
 
     Parameters
@@ -186,8 +166,8 @@ def lacey_rows(source: str, times_s: NDArray[np.float64], numbers: np.ndarray) -
         lacey_index, part = radial or axial.
     """
     return [
-        row("lacey_index", source, lacey_index(now[group], now[group] + now[group + 1]), time_s=time,
+        metric("lacey_index", source, lacey_index(now[group], now[group] + now[group + 1]), time_s=time,
             part=direction)
-        for direction, group in FOLLOWED.items()
+        for direction, group in MARKED.items()
         for time, now in zip(times_s, numbers, strict=True)
     ]  # fmt: skip

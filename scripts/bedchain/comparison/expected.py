@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""What must come out of a case, cases/<case>/expected.csv, against what came out, metrics.csv."""
+"""Expected values of a case, cases/<case>/expected.csv, beside the measured values of metrics.csv."""
 
 from pathlib import Path
 
@@ -26,48 +26,55 @@ def read_expected(file: Path) -> pd.DataFrame:
     Raises
     ------
     UserError
-        Where a line has too many fields, a column is missing, a row is there twice, or a tolerance is not
-        positive.
+        A line has too many fields, a column is missing, a row is there twice, or a tolerance is not positive.
     """
     try:
         table = pd.read_csv(file, comment="#", skipinitialspace=True, dtype={"unit": str})
     except pd.errors.ParserError as error:
-        raise UserError(f"{file}: {str(error).strip()}; put a text with a comma into quotes") from None
+        raise UserError(f"{file}: {str(error).strip()}; put texts with a comma into quotes") from None
     if missing := [name for name in COLUMNS if name not in table]:
         raise UserError(f"{file} lacks the columns {', '.join(missing)}; add them")
     if table.duplicated(["quantity", "source"]).any():
         twice = table[table.duplicated(["quantity", "source"])].iloc[0]
         raise UserError(f"{file}: {twice.quantity} of {twice.source} is there twice; keep one")
     if not (table.tolerance > 0).all():
-        raise UserError(f"{file}: every tolerance must be positive; a value without one cannot be checked")
+        raise UserError(f"{file}: a tolerance is not positive; give each value a positive one")
     return table
 
 
-def deviations(expected: pd.DataFrame, metrics: pd.DataFrame) -> list[str]:
-    """Differences between expected and measured values that exceed the tolerance.
+def with_measured(expected: pd.DataFrame, metrics: pd.DataFrame) -> pd.DataFrame:
+    """Expected values with the measured values beside them.
 
     Parameters
     ----------
     expected : DataFrame
-        Of `read_expected`.
+        From `read_expected`.
     metrics : DataFrame
         Columns quantity, source, value, unit.
 
     Returns
     -------
-    list of str
-        One message for each row that is missing, in another unit, or off; empty where all is well.
+    DataFrame
+        Columns of ``expected``, and measured (NaN where the value, in this unit, is missing) and within (True
+        if it is within the tolerance).
     """
-    found = expected.merge(metrics, "left", ["quantity", "source"], suffixes=("", "_found"), indicator="side")
-    messages = []
-    for row in found.itertuples():
-        name = f"{row.quantity} of {row.source}"
-        if row.side == "left_only":
-            messages.append(f"{name} is missing")
-        elif row.unit_found != row.unit:
-            messages.append(f"{name} is in {row.unit_found}, expected in {row.unit}")
-        elif not abs(row.value_found - row.value) <= row.tolerance:
-            messages.append(
-                f"{name} is {row.value_found:g} {row.unit}, expected {row.value:g} +- {row.tolerance:g}"
-            )
-    return messages
+    measured = metrics.rename(columns={"value": "measured"}).astype({"unit": str})
+    key = ["quantity", "source", "unit"]
+    table = expected.merge(measured[[*key, "measured"]], "left", key)
+    return table.assign(within=(table["measured"] - table["value"]).abs() <= table["tolerance"])
+
+
+def deviations(expected: pd.DataFrame, metrics: pd.DataFrame) -> list[str]:
+    """Messages about measured values that are not within the tolerance, or missing (nan).
+
+    Parameters
+    ----------
+    expected, metrics : DataFrame
+        As `with_measured`.
+    """
+    table = with_measured(expected, metrics)
+    return [
+        f"{row.quantity} of {row.source} [{row.unit}] is {row.measured:g}, "
+        f"expected {row.value:g} +- {row.tolerance:g}"
+        for row in table[~table["within"]].itertuples()
+    ]

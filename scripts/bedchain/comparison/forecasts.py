@@ -1,9 +1,8 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""A chain of any model carried on from all frames of a window, against what the frames themselves show.
+"""Mixing of a chain started in all frames of a window, and mixing counted in the frames.
 
-The Chapman-Kolmogorov test for whatever is Markov on some set of states: a chain learned at a lag and run k
-steps must give what is counted k lags apart. For the static chain `consistency.chapman_kolmogorov` is the
-same from counts alone; here particles start in the states of their model, and every time has its value.
+For the Chapman-Kolmogorov test of a model that is Markov on a set of states: k steps of a chain learned at a
+lag must give the mixing that is counted k lags apart. Particles start in the states of the model.
 """
 
 from collections.abc import Sequence
@@ -19,13 +18,13 @@ from bedchain.errors import DataError
 from bedchain.measures import mixing
 from bedchain.trajectory.frames import Frames
 
-# up to so many keys a list of all that there might be is faster than sorting those that there are
+# up to this number of possible keys a list of all of them is faster than sorting the keys that occur
 LISTED_KEYS = 50_000_000
 
 
 @dataclass(frozen=True)
 class Sides:
-    """Who is on which side in each frame, and is so again some frames later.
+    """Sides of all particles in each frame, and numbers of those that are on the same side some frames later.
 
     Parameters
     ----------
@@ -34,10 +33,10 @@ class Sides:
     marked : (n_frames, 4, n_particles) bool array
         Groups of `mixing.GROUPS`.
     gaps : (n_gaps,) int array
-        Rising numbers of frames between two looks.
+        Rising numbers of frames between two counts [1].
     still : (n_gaps, n_frames, 4) int64 array
-        Particles of each group of a frame that are on its side that many frames later [1]; 0 where the
-        window ends before.
+        Particles of each group of a frame that are on its side so many frames later [1]; 0 beyond the end
+        of the window.
     """
 
     split_x_m: float
@@ -48,7 +47,7 @@ class Sides:
 
 
 def count_sides(frames: Frames, split_x_m: float, split_z_m: float, gaps: Sequence[int]) -> Sides:
-    """Look at the particles of every frame again some frames later.
+    """Sides of the particles in every frame and some frames later.
 
     Parameters
     ----------
@@ -57,7 +56,7 @@ def count_sides(frames: Frames, split_x_m: float, split_z_m: float, gaps: Sequen
     split_x_m, split_z_m : float
         Lines between left and right, and between low and up [m].
     gaps : sequence of int
-        Rising numbers of frames between two looks.
+        Rising numbers of frames between two counts [1].
 
     Returns
     -------
@@ -81,18 +80,18 @@ def count_sides(frames: Frames, split_x_m: float, split_z_m: float, gaps: Sequen
 
 
 def counted(sides: Sides, weights: NDArray[np.int64] | None = None) -> NDArray[np.float64]:
-    """Share of each group that is on its side each gap later, as the frames show it.
+    """Share of each group that is on its side after each gap, counted in the frames.
 
     Parameters
     ----------
     sides : Sides
     weights : (n_starts,) int array, optional
-        How many times each of the first frames counts as a start (bootstrap); the others count 0.
+        How many times each of the first frames counts as a start (bootstrap); later frames count 0 times.
 
     Returns
     -------
     (n_gaps, 4) array
-        Over all starts that the window allows [1].
+        Over all starts in the window [1].
     """
     n_frames = len(sides.marked)
     times = np.ones(n_frames, np.int64)
@@ -106,14 +105,14 @@ def counted(sides: Sides, weights: NDArray[np.int64] | None = None) -> NDArray[n
 
 @dataclass(frozen=True)
 class Starts:
-    """The pasts that particles have in the frames of a window, each once, and how many have it.
+    """Distinct pasts of the particles in the frames of a window, and the number of particles with each.
 
     Parameters
     ----------
     symbols : (history, n_pasts) int32 array
-        What particles of each past show in the frames, one lag apart, that make it, oldest first.
+        Symbols (`MarkovChain.symbols`) of each past, one lag apart, oldest first.
     number : tuple of 4 (n_starts, n_pasts) csr_array
-        Particles of each group with each past in each frame that a step follows [1].
+        Particles of each group with each past in each frame at which a step starts [1].
     """
 
     symbols: NDArray[np.int32]
@@ -121,77 +120,77 @@ class Starts:
 
 
 def count_starts(frames: Frames, chain: MarkovChain, sides: Sides) -> Starts:
-    """Find the pasts in a window, as a chain sees them.
+    """Distinct pasts of the particles of a window, in the symbols of a chain.
 
     Parameters
     ----------
     frames : Frames
         The window of ``sides``.
     chain : MarkovChain
-        Its lag, history and symbols count, not its probabilities.
+        Its lag, history and symbols are used, not its probabilities.
     sides : Sides
 
     Returns
     -------
     Starts
-        Frames that too few others lead up to hold no particles.
+        Without particles in frames that have too few frames before them.
     """
     lag, history, base = chain.lag, chain.history, chain.n_symbols
     n_starts, span = len(frames.times_s) - lag, (history - 1) * lag
-    before, shown = span + chain.back, chain.symbols(frames)
-    keys = np.zeros((n_starts - before, shown.shape[1]), np.int64)
+    before, frame_symbols = span + chain.back, chain.symbols(frames)
+    keys = np.zeros((n_starts - before, frame_symbols.shape[1]), np.int64)
     for ago in range(span, -1, -lag):
-        keys = keys * base + shown[span - ago : n_starts - chain.back - ago]
-    pasts, which = ranked(keys, base**history)
+        keys = keys * base + frame_symbols[span - ago : n_starts - chain.back - ago]
+    pasts, ranks = ranked(keys, base**history)
     groups = np.moveaxis(sides.marked[before:n_starts], 1, 0)
-    number = tuple(_by_frame(which, group, before, pasts.size) for group in groups)
+    number = tuple(_by_frame(ranks, group, before, pasts.size) for group in groups)
     symbols = np.array([pasts // base**ago % base for ago in range(history)][::-1], np.int32)
     return Starts(symbols, number)
 
 
 def ranked(keys: NDArray[np.int64], n_keys: int) -> tuple[NDArray[np.int64], NDArray[np.integer]]:
-    """Different keys, rising, and the place of each of the given ones among them.
+    """Distinct keys, rising, and the rank of each key among them.
 
     Parameters
     ----------
     keys : (...) int64 array
         From 0 to ``n_keys - 1``.
     n_keys : int
-        Up to `LISTED_KEYS` they are looked up in a list of all that there might be, above that sorted.
+        Possible keys; up to `LISTED_KEYS` ranks come from a list of all of them, above from sorting.
 
     Returns
     -------
-    found : (n_found,) int64 array
-    which : (...) int array
+    distinct : (n_distinct,) int64 array
+    ranks : (...) int array
     """
     if n_keys > LISTED_KEYS:
-        found, which = np.unique(keys, return_inverse=True)
-        return found, which.reshape(keys.shape)
-    seen = np.zeros(n_keys, bool)
-    seen[keys] = True
-    place = np.cumsum(seen, dtype=np.int32) - 1
-    return np.flatnonzero(seen), place[keys]
+        distinct, ranks = np.unique(keys, return_inverse=True)
+        return distinct, ranks.reshape(keys.shape)
+    occurs = np.zeros(n_keys, bool)
+    occurs[keys] = True
+    rank = np.cumsum(occurs, dtype=np.int32) - 1
+    return np.flatnonzero(occurs), rank[keys]
 
 
 def _by_frame(
-    which: NDArray[np.integer], group: NDArray[np.bool_], before: int, n_pasts: int
+    ranks: NDArray[np.integer], group: NDArray[np.bool_], before: int, n_pasts: int
 ) -> sparse.csr_array:
-    """Particles of a group with each past in each frame, after as many empty frames as come before."""
+    """Particles of a group with each past in each frame, after ``before`` empty frames."""
     places, numbers = [np.zeros(0, np.int64)], [np.zeros(0, np.int64)]
-    for now, marked in zip(which, group, strict=True):
+    for now, marked in zip(ranks, group, strict=True):
         held = np.bincount(now[marked], minlength=n_pasts)
         places.append(np.flatnonzero(held))
         numbers.append(held[places[-1]])
     ends = np.cumsum([0] * before + [place.size for place in places])
     return sparse.csr_array(
-        (np.concatenate(numbers), np.concatenate(places), ends), shape=(before + len(which), n_pasts)
+        (np.concatenate(numbers), np.concatenate(places), ends), shape=(before + len(ranks), n_pasts)
     )
 
 
 def propagated(
     chain: MarkovChain, starts: Starts, sides: Sides, weights: NDArray[np.int64]
 ) -> tuple[NDArray[np.int64], NDArray[np.float64]]:
-    """Share of each group that is on its side after steps of a chain, expected from all starts.
+    """Expected share of each group that is on its side after steps of a chain from all starts.
 
     Parameters
     ----------
@@ -206,9 +205,9 @@ def propagated(
     Returns
     -------
     rows : (n,) int64 array
-        Which of ``sides.gaps`` are whole steps of the chain.
+        Numbers of the ``sides.gaps`` that are whole steps of the chain.
     remaining : (n, 4) array
-        After these gaps [1].
+        [1].
     """
     rows = np.flatnonzero(sides.gaps % chain.lag == 0)
     steps = sides.gaps[rows] // chain.lag
@@ -217,5 +216,5 @@ def propagated(
     begin = np.array(
         [np.bincount(states, weights @ number, chain.matrix.shape[0]) for number in starts.number]
     )
-    found = propagate.expected_values(chain.matrix, begin, shares, int(steps.max(initial=0)))
-    return rows, found[steps][:, np.arange(4), np.arange(4)]
+    means = propagate.expected_values(chain.matrix, begin, shares, int(steps.max(initial=0)))
+    return rows, means[steps][:, np.arange(4), np.arange(4)]

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Is the bed Markov for a model? Chains of several lags against the DEM, with bands from blocks of time."""
+"""Markov test of a model: its chains at several lags against the frames, with bands from blocks of time."""
 
 import logging
 from collections.abc import Callable, Sequence
@@ -11,8 +11,8 @@ from numpy.typing import NDArray
 from bedchain.chains.chain import Chain
 from bedchain.chains.markov_chain import MarkovChain
 from bedchain.chains.matrix_analysis import implied_timescales
-from bedchain.comparison.diagnostics import Row, row
 from bedchain.comparison.forecasts import Sides, Starts, count_starts, counted, propagated
+from bedchain.comparison.metrics import Metric, metric
 from bedchain.errors import DataError
 from bedchain.measures.mixing import GROUPS
 from bedchain.trajectory.frames import Frames
@@ -20,28 +20,28 @@ from bedchain.uncertainty.bands import band, block_chains
 
 LOG = logging.getLogger(__name__)
 
-# processes whose timescales are given, slowest first; a pair of complex eigenvalues counts twice
+# number of timescales, slowest first; a pair of complex eigenvalues counts twice
 TIMESCALES = 5
-# chains learned again for a band, unless learning and solving one takes too long: above these entries
+# replicates of a chain for a band; none for a matrix of more entries, which takes too long to learn and solve
 REPLICATES, MOST_ENTRIES = 40, 100_000
-# no longer lags for a chain of more states: most pairs are seen once then, and a lag takes a minute
+# a chain of more states gets no longer lags: most pairs would have a single sample, and a lag take a minute
 MOST_STATES = 150_000
-# windows hold at least this many steps of the longest lag
+# steps of the longest lag in a window, at least
 FEWEST_STEPS = 5
 
 
 @dataclass(frozen=True)
-class Findings:
-    """What one chain says, and what the frames do.
+class MarkovTest:
+    """Timescales and mixing of a chain, beside the mixing of the frames.
 
     Parameters
     ----------
     timescales_s : (..., n) array
-        Slowest first [s]; NaN where there are fewer.
+        Slowest first [s]; NaN beyond the last.
     remaining : (..., n_times, 4) array
-        Share of each group on its side by the chain, at whole steps [1].
+        Share of each group on its side, by the chain at whole steps [1].
     observed : (..., n_times, 4) array
-        The same by the frames [1].
+        The same, by the frames [1].
     """
 
     timescales_s: NDArray[np.float64]
@@ -65,7 +65,7 @@ def check_model(
     lags: Sequence[int],
     block: int,
     rng: np.random.Generator,
-) -> list[Row]:
+) -> list[Metric]:
     """Implied timescales and Chapman-Kolmogorov test of one model at several lags.
 
     Parameters
@@ -89,14 +89,14 @@ def check_model(
     Returns
     -------
     list of dict
-        implied_timescale (part: 1 the slowest), remaining_propagated by time, and over the times
-        chapman_kolmogorov_rms and chapman_kolmogorov_mean of its difference from the frames, by group.
+        implied_timescale (part: 1 the slowest), remaining_propagated by time and group, and by group the
+        rms and the mean over the times of its difference from the frames, chapman_kolmogorov_rms and _mean.
     """
     rows = []
     for lag in lags:
-        found, replicates, n_states = with_replicates(relearner(lag), frames, sides, lag, block, rng)
+        result, replicates, n_states = with_replicates(relearner(lag), frames, sides, lag, block, rng)
         times = sides.gaps[sides.gaps % lag == 0] * frames.interval_s
-        rows += finding_rows(name, lag * frames.interval_s, times, found, replicates)
+        rows += result_rows(name, lag * frames.interval_s, times, result, replicates)
         if n_states > MOST_STATES:
             LOG.info("%s chain: %d states at %g s, no longer lags", name, n_states, lag * frames.interval_s)
             break
@@ -110,31 +110,35 @@ def with_replicates(
     lag: int,
     block: int,
     rng: np.random.Generator,
-) -> tuple[Findings, Findings | None, int]:
-    """Findings of a chain, of chains learned again where that is affordable, and its number of states."""
+) -> tuple[MarkovTest, MarkovTest, int]:
+    """Test of a chain, its replicates (none where they take too long), and the chain's number of states."""
     n_steps = len(frames.times_s) - lag
-    one = np.ones(n_steps, np.int64)
-    chain = markovian(relearn(one))
+    every_step = np.ones(n_steps, np.int64)
+    chain = markovian(relearn(every_step))
     starts = count_starts(frames, chain, sides)
-    found = findings(chain, starts, sides, one)
-    n_states = chain.matrix.shape[0]
+    result = tested(chain, starts, sides, every_step)
     if chain.matrix.nnz > MOST_ENTRIES:
-        return found, None, n_states
-    size = found.timescales_s.size
-    samples = block_chains(
-        lambda weights: findings(markovian(relearn(weights)), starts, sides, weights),
-        lambda again: np.concatenate([again.timescales_s, again.remaining.ravel(), again.observed.ravel()]),
-        n_steps,
-        min(block, n_steps),
-        REPLICATES,
-        rng,
-    )
-    curves = samples[:, size:].reshape(len(samples), 2, *found.remaining.shape)
-    return found, Findings(samples[:, :size], curves[:, 0], curves[:, 1]), n_states
+        samples = np.empty((0, _flat(result).size))
+    else:
+        samples = block_chains(
+            lambda weights: tested(markovian(relearn(weights)), starts, sides, weights),
+            _flat,
+            n_steps,
+            min(block, n_steps),
+            REPLICATES,
+            rng,
+        )
+    n_scales = result.timescales_s.size
+    curves = samples[:, n_scales:].reshape(len(samples), 2, *result.remaining.shape)
+    return result, MarkovTest(samples[:, :n_scales], curves[:, 0], curves[:, 1]), chain.matrix.shape[0]
+
+
+def _flat(result: MarkovTest) -> NDArray[np.float64]:
+    return np.concatenate([result.timescales_s, result.remaining.ravel(), result.observed.ravel()])
 
 
 def markovian(chain: Chain) -> MarkovChain:
-    """The chain, if it has a transition matrix.
+    """The same chain, checked to have a transition matrix.
 
     Raises
     ------
@@ -146,50 +150,47 @@ def markovian(chain: Chain) -> MarkovChain:
     return chain
 
 
-def findings(chain: MarkovChain, starts: Starts, sides: Sides, weights: NDArray[np.int64]) -> Findings:
-    """Timescales of a chain, and its mixing from all starts beside the frames' own."""
-    slowest = np.full(TIMESCALES, np.nan)
-    scales = implied_timescales(chain.matrix, chain.lag_s, TIMESCALES)
-    slowest[: scales.size] = scales
-    which, remaining = propagated(chain, starts, sides, weights)
-    return Findings(slowest, remaining, counted(sides, weights)[which])
+def tested(chain: MarkovChain, starts: Starts, sides: Sides, weights: NDArray[np.int64]) -> MarkovTest:
+    """Timescales of a chain, and its mixing from all starts beside that of the frames."""
+    timescales = np.full(TIMESCALES, np.nan)
+    slowest = implied_timescales(chain.matrix, chain.lag_s, TIMESCALES)
+    timescales[: slowest.size] = slowest
+    rows, remaining = propagated(chain, starts, sides, weights)
+    return MarkovTest(timescales, remaining, counted(sides, weights)[rows])
 
 
-def finding_rows(
-    source: str, lag_s: float, times_s: NDArray[np.float64], found: Findings, replicates: Findings | None
-) -> list[Row]:
-    """Findings as rows, with 95 % bands where there are replicates."""
+def result_rows(
+    source: str, lag_s: float, times_s: NDArray[np.float64], result: MarkovTest, replicates: MarkovTest
+) -> list[Metric]:
+    """Rows of a test, with 95 % bands if there are replicates."""
     groups = [group for _, group in GROUPS]
-    scales = int(np.isfinite(found.timescales_s).sum())
-    both = (found, replicates)
-    rows = _banded("implied_timescale", source, "s", _slowest, both, [str(n + 1) for n in range(scales)])
+    numbers = [str(number + 1) for number in range(np.isfinite(result.timescales_s).sum())]
+    rows = _banded("implied_timescale", source, "s", result.timescales_s, replicates.timescales_s, numbers)
     for place, time in enumerate(times_s):
-        now = [one and Findings(one.timescales_s, one.remaining[..., place, :], one.observed) for one in both]
-        curve = _banded("remaining_propagated", source, "1", lambda one: one.remaining, now, groups)
-        rows += [one | {"time_s": time} for one in curve]
-    for quantity, of in (("chapman_kolmogorov_rms", _rms), ("chapman_kolmogorov_mean", _mean)):
-        rows += [one | {"time_s": times_s[-1]} for one in _banded(quantity, source, "1", of, both, groups)]
-    return [one | {"lag_s": lag_s} for one in rows]
+        curves = (result.remaining[place], replicates.remaining[:, place])
+        rows += [
+            row | {"time_s": time} for row in _banded("remaining_propagated", source, "1", *curves, groups)
+        ]
+    for quantity, summary in (("chapman_kolmogorov_rms", _rms), ("chapman_kolmogorov_mean", _mean)):
+        errors = (summary(result), summary(replicates))
+        rows += [row | {"time_s": times_s[-1]} for row in _banded(quantity, source, "1", *errors, groups)]
+    return [row | {"lag_s": lag_s} for row in rows]
 
 
-def _slowest(found: Findings) -> NDArray[np.float64]:
-    return found.timescales_s
+def _rms(result: MarkovTest) -> NDArray[np.float64]:
+    return np.asarray(np.sqrt(((result.remaining - result.observed) ** 2).mean(axis=-2)))
 
 
-def _rms(found: Findings) -> NDArray[np.float64]:
-    return np.asarray(np.sqrt(((found.remaining - found.observed) ** 2).mean(axis=-2)))
-
-
-def _mean(found: Findings) -> NDArray[np.float64]:
-    return np.asarray((found.remaining - found.observed).mean(axis=-2))
+def _mean(result: MarkovTest) -> NDArray[np.float64]:
+    return np.asarray((result.remaining - result.observed).mean(axis=-2))
 
 
 def _banded(
     quantity: str,
     source: str,
     unit: str,
-    of: Callable[[Findings], NDArray[np.float64]],
-    both: Sequence[Findings | None],
+    values: NDArray[np.float64],
+    samples: NDArray[np.float64],
     parts: Sequence[str],
 ) -> list[Row]:
     """A quantity of findings, one row a part, with the band of the replicates where there are any."""
@@ -205,13 +206,13 @@ def _banded(
         if whole.any():
             ends[:, there] = band(samples[whole][:, there])
     return [
-        row(quantity, source, value, unit, part=part, ci_low=float(low), ci_high=float(high))
-        for part, value, low, high in zip(parts, of(found), *ends, strict=False)
+        metric(quantity, source, value, unit, part=part, ci_low=start, ci_high=end)
+        for part, value, start, end in zip(parts, values, low, high, strict=False)
     ]
 
 
-def counted_rows(sides: Sides, frames: Frames, block: int, rng: np.random.Generator) -> list[Row]:
-    """What the frames show of the mixing, with the band of blocks of starts.
+def counted_rows(sides: Sides, frames: Frames, block: int, rng: np.random.Generator) -> list[Metric]:
+    """Mixing of the frames, with bands from blocks of starts.
 
     Parameters
     ----------
@@ -234,8 +235,8 @@ def counted_rows(sides: Sides, frames: Frames, block: int, rng: np.random.Genera
     )
     low, high = band(samples)
     return [
-        row("remaining_counted", "dem", share, time_s=gap * frames.interval_s, part=group,
-            ci_low=float(low[place, column]), ci_high=float(high[place, column]))
+        metric("remaining_counted", "dem", share, time_s=gap * frames.interval_s, part=group,
+            ci_low=low[place, column], ci_high=high[place, column])
         for place, (gap, shares) in enumerate(zip(sides.gaps, counted(sides), strict=True))
         for column, ((_, group), share) in enumerate(zip(GROUPS, shares, strict=True))
     ]  # fmt: skip

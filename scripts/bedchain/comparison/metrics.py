@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""The chains against the DEM: curves in long form, and numbers that say how well they agree."""
+"""Metrics of the bed and of the chains' errors: rows of metrics.csv."""
 
 import json
 from typing import Any
@@ -25,8 +25,16 @@ from bedchain.uncertainty.noise_floor import ROUND_OFF, noise_floor
 Metric = dict[str, Any]
 
 
-def metric(quantity: str, source: str, value: float, unit: str = "1") -> Metric:
-    """One row of metrics.csv, without an interval.
+def metric(
+    quantity: str,
+    source: str,
+    value: float,
+    unit: str = "1",
+    ci_low: float = np.nan,
+    ci_high: float = np.nan,
+    **where: Any,
+) -> Metric:
+    """Row of a long table of values, such as metrics.csv or diagnostics.csv.
 
     Parameters
     ----------
@@ -34,6 +42,10 @@ def metric(quantity: str, source: str, value: float, unit: str = "1") -> Metric:
     value : float
         In ``unit``.
     unit : str
+    ci_low, ci_high : float
+        Ends of the 95 % interval, in ``unit``; NaN for none.
+    **where
+        Further columns of the table, such as time_s.
 
     Returns
     -------
@@ -41,12 +53,12 @@ def metric(quantity: str, source: str, value: float, unit: str = "1") -> Metric:
     """
     return {
         "quantity": quantity, "source": source, "value": float(value), "unit": unit,
-        "ci_low": np.nan, "ci_high": np.nan,
+        "ci_low": float(ci_low), "ci_high": float(ci_high), **where,
     }  # fmt: skip
 
 
 def dem_metrics(on_side: np.ndarray, remaining: np.ndarray) -> list[Metric]:
-    """Shares of the bed on each side, and how much of each group has crossed at the end.
+    """Share of the bed on each side, and share of each group that has crossed at the end.
 
     Parameters
     ----------
@@ -73,7 +85,7 @@ def dem_metrics(on_side: np.ndarray, remaining: np.ndarray) -> list[Metric]:
 def model_metrics(
     source: str, model: np.ndarray, dem: np.ndarray, replicates: np.ndarray | None = None
 ) -> list[Metric]:
-    """Errors of a chain's curves over the comparison window, and the share that crossed.
+    """Errors of a chain's curves over the comparison window, and the share that has crossed at its end.
 
     Parameters
     ----------
@@ -81,7 +93,7 @@ def model_metrics(
     model, dem : (n_times, 4) ndarray
         Share of each group on its side, at the same times [1].
     replicates : (n_replicates, n_times, 4) ndarray, optional
-        Curves of chains learned again on blocks of time; they give the 95 % bands.
+        Curves of chains learned from resampled blocks of time, for 95 % bands.
 
     Returns
     -------
@@ -89,24 +101,19 @@ def model_metrics(
         error_signed (mean of model - DEM), error_rms, crossed_end, each by group.
     """
     values = curve_errors(model, dem)
-    bands = (
-        {}
-        if replicates is None
-        else {name: band(found) for name, found in curve_errors(replicates, dem).items()}
-    )
-    rows = []
-    for column, (_, group) in enumerate(GROUPS):
-        for name, value in values.items():
-            row = metric(f"{name}_{group}", source, value[column])
-            if name in bands:
-                low, high = bands[name]
-                row |= {"ci_low": float(low[column]), "ci_high": float(high[column])}
-            rows.append(row)
-    return rows
+    if replicates is None:
+        bands = dict.fromkeys(values, np.full((2, len(GROUPS)), np.nan))
+    else:
+        bands = {name: np.array(band(samples)) for name, samples in curve_errors(replicates, dem).items()}
+    return [
+        metric(f"{name}_{group}", source, value[column], "1", *bands[name][:, column])
+        for column, (_, group) in enumerate(GROUPS)
+        for name, value in values.items()
+    ]
 
 
 def batch_metrics(source: str, moments_s: np.ndarray, model: np.ndarray, dem: np.ndarray) -> list[Metric]:
-    """How far a chain's distribution of the batch is from the DEM's own at each moment.
+    """Total variation of a chain's distribution of the batch from the DEM's at each moment.
 
     Parameters
     ----------
@@ -121,7 +128,7 @@ def batch_metrics(source: str, moments_s: np.ndarray, model: np.ndarray, dem: np
     list of dict
         batch_total_variation at each moment, and their mean.
     """
-    distances = [total_variation(one, two) for one, two in zip(model, dem, strict=True)]
+    distances = [total_variation(*shares) for shares in zip(model, dem, strict=True)]
     rows = [
         metric(f"batch_total_variation_{moment:.2f}_s", source, distance)
         for moment, distance in zip(moments_s, distances, strict=True)
@@ -130,7 +137,7 @@ def batch_metrics(source: str, moments_s: np.ndarray, model: np.ndarray, dem: np
 
 
 def report_metrics(source: str, report: str) -> list[Metric]:
-    """What learning found of a chain, its units taken from the ends of the names.
+    """Numbers of the report of a chain, with units from the ends of their names.
 
     Parameters
     ----------
@@ -147,12 +154,12 @@ def report_metrics(source: str, report: str) -> list[Metric]:
 
 
 def bed_metrics(series: pd.DataFrame, weight_Pa: float, start_s: float, end_s: float) -> list[Metric]:
-    """Pressure drop and height of the bed, or height and inclination of a drum's, means over a window.
+    """Means over a window: pressure drop and height of a bed, or height and inclination of a drum's bed.
 
     Parameters
     ----------
     series : DataFrame
-        Of `read_series`.
+        From `dem.series.read_series`.
     weight_Pa : float
         Weight over the bed's cross section [Pa].
     start_s, end_s : float
@@ -165,7 +172,7 @@ def bed_metrics(series: pd.DataFrame, weight_Pa: float, start_s: float, end_s: f
     Raises
     ------
     UserError
-        No time of the series is in the window.
+        The series has no time in the window.
     """
     part = series[(series["time_s"] >= start_s) & (series["time_s"] <= end_s)]
     if part.empty:
@@ -187,7 +194,7 @@ def bed_metrics(series: pd.DataFrame, weight_Pa: float, start_s: float, end_s: f
 
 
 def mean_metric(quantity: str, series: np.ndarray, unit: str) -> Metric:
-    """Mean over time with the 95 % band of means over moving blocks.
+    """Mean over time with its 95 % band from moving blocks.
 
     Parameters
     ----------
@@ -202,12 +209,12 @@ def mean_metric(quantity: str, series: np.ndarray, unit: str) -> Metric:
     """
     block = block_steps(correlation_steps(series), len(series))
     means = block_means(series, block, REPLICATES, np.random.default_rng(BAND_SEED))
-    low, high = (float(end) for end in band(means))
-    return metric(quantity, "dem", float(series.mean()), unit) | {"ci_low": low, "ci_high": high}
+    low, high = band(means)
+    return metric(quantity, "dem", series.mean(), unit, float(low), float(high))
 
 
 def floor_metrics(curves: NDArray[np.float64]) -> list[Metric]:
-    """Noise floor of each group, and how many realisations it is from.
+    """Noise floor of each group, and the number of realisations.
 
     Parameters
     ----------
@@ -219,15 +226,15 @@ def floor_metrics(curves: NDArray[np.float64]) -> list[Metric]:
     list of dict
     """
     floor, (low, high) = noise_floor(curves[:, 1:])
-    rows: list[dict[str, Any]] = [metric("realisations", "dem", len(curves))]
-    for column, (_, group) in enumerate(GROUPS):
-        row = metric(f"noise_floor_{group}", "dem", floor[column])
-        rows.append(row | {"ci_low": float(low[column]), "ci_high": float(high[column])})
-    return rows
+    columns = zip(GROUPS, floor, low, high, strict=True)
+    floors = [
+        metric(f"noise_floor_{group}", "dem", value, "1", *ends) for (_, group), value, *ends in columns
+    ]
+    return [metric("realisations", "dem", len(curves)), *floors]
 
 
 def noise_metrics(source: str, model: NDArray[np.float64], curves: NDArray[np.float64]) -> list[Metric]:
-    """A chain's error beside the noise: against the DEM's mean, and as a multiple of the noise floor.
+    """Errors of a chain against the mean of the realisations, and as multiples of the noise floor.
 
     Parameters
     ----------
@@ -235,14 +242,14 @@ def noise_metrics(source: str, model: NDArray[np.float64], curves: NDArray[np.fl
     model : (n_times, 4) ndarray
         Share of each group on its side [1].
     curves : (n_realisations, n_times, 4) ndarray
-        Of the DEM at the same times, the main run first.
+        Of the DEM, at the same times, the main run first [1].
 
     Returns
     -------
     list of dict
-        error_signed_of_mean, error_rms_of_mean: model - mean of the realisations; a perfect model has the
-        noise floor over sqrt(n_realisations). error_over_noise: rms error against the main run over the
-        noise floor; 1 is what the exact mean of the bed would have.
+        error_signed_of_mean, error_rms_of_mean: model - mean of the realisations; the rms of a perfect model
+        is the noise floor over sqrt(n_realisations). error_over_noise: rms error against the main run over
+        the noise floor; it is 1 for the exact mean of the bed.
     """
     floor, _ = noise_floor(curves[:, 1:])
     of_mean, of_run = curve_errors(model, curves.mean(axis=0)), curve_errors(model, curves[0])

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Table 1 of the paper, beside the case at hand."""
+"""Table 1 of the paper beside the values of a case."""
 
 from typing import Any
 
@@ -9,14 +9,14 @@ from bedchain.case.schema import Schema, schema_keys
 
 
 def table_of_values(values: dict[str, Any], schema: Schema) -> pd.DataFrame:
-    """Every value of a case with its unit, its meaning and the paper's own value.
+    """Values of a case with their meanings and the paper's values.
 
     Parameters
     ----------
     values : dict
         Dotted key -> value.
     schema : dict
-        The schema; ``x-paper`` is the paper's value.
+        The schema; ``x-paper`` is the value in the paper.
 
     Returns
     -------

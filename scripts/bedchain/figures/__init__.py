@@ -1,2 +1,2 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""One style for all figures; pictures for films."""
+"""Style of the figures; pictures for films."""

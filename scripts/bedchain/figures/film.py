@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Pictures of many particles, fast enough for films: discs painted straight into an image."""
+"""Pictures of particles for films: discs painted directly into an image."""
 
 from collections.abc import Iterable, Iterator
 
@@ -11,21 +11,21 @@ from bedchain.measures.voidage import profiles
 from bedchain.trajectory.frames import Frames
 from bedchain.trajectory.grid import Grid
 
-# discs of neighbours touch at three pixels a diameter; more would make films larger and show nothing new
+# at three pixels the discs of touching particles touch; more pixels make films larger and show no more
 PIXELS_PER_DIAMETER = 3
 
 
 class Canvas:
-    """Picture of a bed in which every particle is a disc of its true size.
+    """Picture of a bed with every particle as a disc of its true size.
 
     Parameters
     ----------
     width_m, height_m : float
-        What is shown [m].
+        Of the part of the bed that is shown [m].
     diameter_m : float
         Of a particle [m].
     colours : list of str
-        Of particles that are marked, and of the others.
+        Of the marked particles, and of the others.
     """
 
     def __init__(self, width_m: float, height_m: float, diameter_m: float, colours: list[str]) -> None:
@@ -34,18 +34,18 @@ class Canvas:
         self.shape = tuple(max(1, round(length / self.pixel_m)) for length in (height_m, width_m))
         self.palette = (255 * np.array([to_rgb(colour) for colour in ("white", *colours)])).astype(np.uint8)
         self.reach = PIXELS_PER_DIAMETER // 2
-        # painted with a margin, for the discs whose centre is as far outside as they reach
+        # a margin for discs whose centre is outside the picture
         self.margin = 2 * self.reach
         self.row_length = self.shape[1] + 2 * self.margin
-        around = np.arange(-self.reach, self.reach + 1)
-        rows, columns = np.meshgrid(around, around, indexing="ij")
+        offsets = np.arange(-self.reach, self.reach + 1)
+        rows, columns = np.meshgrid(offsets, offsets, indexing="ij")
         inside = rows**2 + columns**2 <= (PIXELS_PER_DIAMETER / 2) ** 2
         self.disc = (rows * self.row_length + columns)[inside]
 
     def discs(
         self, x_m: NDArray[np.floating], z_m: NDArray[np.floating], marked: NDArray[np.bool_]
     ) -> NDArray[np.uint8]:
-        """Paint particles.
+        """Picture of particles.
 
         Parameters
         ----------
@@ -59,10 +59,10 @@ class Canvas:
             The first row is the lowest.
         """
         row, column = (np.floor(np.asarray(place) / self.pixel_m).astype(int) for place in (z_m, x_m))
-        seen = (row >= -self.reach) & (row < self.shape[0] + self.reach)
-        seen &= (column >= -self.reach) & (column < self.shape[1] + self.reach)
-        centre = ((row + self.margin) * self.row_length + column + self.margin)[seen]
-        colour = np.where(marked[seen], 1, 2).astype(np.uint8)
+        visible = (row >= -self.reach) & (row < self.shape[0] + self.reach)
+        visible &= (column >= -self.reach) & (column < self.shape[1] + self.reach)
+        centre = ((row + self.margin) * self.row_length + column + self.margin)[visible]
+        colour = np.where(marked[visible], 1, 2).astype(np.uint8)
         picture = np.zeros((self.shape[0] + 2 * self.margin, self.row_length), np.uint8)
         for pixel in self.disc:
             picture.ravel()[centre + pixel] = colour
@@ -72,7 +72,7 @@ class Canvas:
 def in_their_cells(
     paths: Iterable[NDArray[np.integer]], grid: Grid, shares: NDArray[np.float64]
 ) -> Iterator[tuple[NDArray[np.float64], NDArray[np.float64]]]:
-    """Places of particles that only their cells are known of: each keeps its share of the way through a cell.
+    """Positions of particles whose cells alone are known; each keeps its relative position in its cells.
 
     Parameters
     ----------
@@ -80,7 +80,7 @@ def in_their_cells(
         Cells.
     grid : Grid
     shares : (2, n_particles) array
-        Along x and z, 0 to 1.
+        Relative positions along x and z, 0 to 1 [1].
 
     Yields
     ------
@@ -101,15 +101,15 @@ def voidages(
     thickness_m: float,
     diameter_m: float,
 ) -> Iterator[NDArray[np.float64]]:
-    """Voidage of every lag-th frame, in cells that are about square.
+    """Voidage of every lag-th frame, in nearly square cells.
 
     Parameters
     ----------
     frames : Frames
     lag : int
-        Frames from one to the next.
+        Frames between two that are shown [1].
     width_m, top_m : float
-        What is looked at [m].
+        Of the part of the bed that is shown [m].
     cell_m, thickness_m, diameter_m : float
         Of a cell, of the slab, of a particle [m].
 
@@ -124,8 +124,8 @@ def voidages(
         strip = np.clip(np.digitize(x, edges[0]) - 1, 0, columns - 1)
         yield np.stack(
             [
-                profiles(z[None, strip == at], edges[1], width_m / columns, thickness_m, diameter_m)[0]
-                for at in range(columns)
+                profiles(z[None, strip == column], edges[1], width_m / columns, thickness_m, diameter_m)[0]
+                for column in range(columns)
             ],
             axis=1,
         )

@@ -1,22 +1,22 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""One colour, marker and dash for each model, the same in all figures that show many of them."""
+"""Colour, marker and dash of each model, the same in all figures of many models."""
 
 from collections.abc import Iterable
 from typing import Any, NamedTuple
 
 BASELINE = "static_baseline"
-# told apart by colour-blind readers, and by marker and dash in grey (colours: Paul Tol's bright scheme)
+# Paul Tol's bright scheme, distinct for colour-blind readers; in grey the markers and dashes differ
 COLOURS = ("#ee6677", "#4477aa", "#228833", "#aa3377", "#66ccee", "#ccbb44", "#777777")
 MARKERS = ("o", "^", "s", "D", "v", "P", "X")
 DASHES: tuple[Any, ...] = (
     (0, (4, 1.5)), (0, (1.2, 1.2)), "-", (0, (6, 1.5, 1.2, 1.5)), (0, (8, 2)), (0, (3, 1, 1, 1)), (0, (2, 2)),
 )  # fmt: skip
-# they keep their styles whatever other models there are
+# always with the first two styles
 FIRST = ("static", "dynamic")
 
 
 class ModelStyle(NamedTuple):
-    """How a model is drawn."""
+    """Style of a model's curves and points."""
 
     colour: str
     marker: str
@@ -24,17 +24,17 @@ class ModelStyle(NamedTuple):
 
 
 def model_styles(models: Iterable[str]) -> dict[str, ModelStyle]:
-    """Styles by model; the baseline shares that of the static chain.
+    """Styles by model; the baseline has that of the static chain.
 
     Parameters
     ----------
     models : iterable of str
-        In any order, perhaps with doubles.
+        In any order; repeated names are allowed.
 
     Returns
     -------
     dict of str to ModelStyle
-        In a fixed order: static and dynamic, then the others by name.
+        Static and dynamic first, then the others by name.
     """
     others = sorted({*models} - {*FIRST, BASELINE})
     names = [*FIRST, *others]

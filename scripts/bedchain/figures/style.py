@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""One style for all figures: a journal's column widths, vector output, colours that all readers can tell."""
+"""Style of all figures: column widths of a journal, fonts, colours, and files as vectors and pixels."""
 
 from collections.abc import Iterator
 from contextlib import contextmanager
@@ -51,7 +51,7 @@ STYLE: Any = {
 
 @contextmanager
 def figure_style() -> Iterator[None]:
-    """The style of every figure, for the time of a ``with`` block; figures left open are closed after it."""
+    """Style of every figure, within a ``with`` block; open figures are closed after it."""
     with matplotlib.rc_context(STYLE):
         try:
             yield
@@ -84,15 +84,15 @@ class FigureFiles:
 
 
 def save_figure(figure: Figure, png: Path, pdf: Path, resolution_dpi: int) -> None:
-    """Save a figure in both forms, each complete or not at all.
+    """Save a figure as png and pdf, each complete or not at all.
 
     Parameters
     ----------
     figure : Figure
     png, pdf : Path
-        Files to make; dates are left out, so that the same data make the same file.
+        Files to make; without dates, so that the same data make the same file.
     resolution_dpi : int
-        Of the png, and of pixels inside the pdf [dots per inch].
+        Of the png, and of images in the pdf [dots per inch].
     """
     for target, metadata in ((png, {"Software": None}), (pdf, {"CreationDate": None})):
         with complete(target) as temporary:
@@ -100,18 +100,18 @@ def save_figure(figure: Figure, png: Path, pdf: Path, resolution_dpi: int) -> No
 
 
 def map_colours(name: str) -> Colormap:
-    """Colour map whose lowest end, nothing there, is the white of the page."""
+    """Colour map with the white of the page for missing values."""
     return plt.get_cmap(name).with_extremes(bad=EMPTY_COLOUR)
 
 
 def draw_cells(axes: Axes, values: np.ndarray, grid: Grid, norm: Normalize, colours: Colormap) -> QuadMesh:
-    """Values of cells as a map in the bed's own proportions; cells with 0 stay white.
+    """Map of the values of cells, in the proportions of the bed; cells with 0 are white.
 
     Parameters
     ----------
     axes : Axes
     values : (n_cells,) ndarray
-        One value a cell, in the order of cell numbers.
+        By cell number.
     grid : Grid
     norm : Normalize
     colours : Colormap
@@ -142,7 +142,7 @@ def draw_particles(
     diameter : float
         Diameter [m].
     **style
-        Passed on to Matplotlib.
+        Of `matplotlib.collections.EllipseCollection`.
 
     Returns
     -------
@@ -159,22 +159,22 @@ def draw_particles(
 
 
 def close_frame(axes: Axes, open_top: bool = True) -> None:
-    """Walls of the bed as lines: left, right and bottom, and the top where it is shown."""
+    """Draw the walls of the bed: left, right and bottom, and the top if it is closed."""
     for side, shown in (("left", True), ("bottom", True), ("right", True), ("top", not open_top)):
         axes.spines[side].set_visible(shown)
         axes.spines[side].set_color(LINE_COLOUR)
 
 
 def shown_height(cells: np.ndarray, grid: Grid, margin_rows: int = 1) -> float:
-    """Height up to which something is to be seen, rounded up to a row [m].
+    """Height of the highest cell that is not empty, rounded up to a row and with a margin [m].
 
     Parameters
     ----------
     cells : integer array
-        Numbers of the cells that hold something.
+        Numbers of the cells that are not empty.
     grid : Grid
     margin_rows : int
-        Empty rows kept above.
+        Empty rows above it.
 
     Returns
     -------

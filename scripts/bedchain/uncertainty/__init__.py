@@ -1,2 +1,2 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Error bars, noise floors, drifts, and deviations of curves from each other."""
+"""Error bars, noise floor, deviations of curves, and drifts."""

@@ -1,9 +1,9 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Error bars from moving blocks of time.
 
-Particles of one bubble move together and frames that follow each other are alike, so the binomial error of
-as many independent particles is far too small. Whole blocks of steps are drawn again instead (Kuensch
-1989), long against the time over which the bed forgets.
+Particles of a bubble move together, and successive frames are similar: the binomial error of as many
+independent particles is far too small. Instead whole blocks of steps are resampled (Kuensch 1989), longer
+than the correlation time of the bed.
 """
 
 from collections.abc import Callable
@@ -19,7 +19,7 @@ Learned = TypeVar("Learned")
 
 
 def block_weights(n_steps: int, block: int, rng: np.random.Generator) -> NDArray[np.int64]:
-    """How many times each step counts in one replicate: blocks drawn with replacement, the last cut to fit.
+    """Weight of each step in a replicate: blocks are drawn with replacement, the last is cut to fit.
 
     Parameters
     ----------
@@ -28,12 +28,12 @@ def block_weights(n_steps: int, block: int, rng: np.random.Generator) -> NDArray
     block : int
         Steps in a block; several blocks must fit into the window for a meaningful band.
     rng : numpy Generator
-        Draws where the blocks begin.
+        Draws the first steps of the blocks.
 
     Returns
     -------
     (n_steps,) int64 array
-        Sums to ``n_steps``.
+        Number of times that each step counts; sums to ``n_steps``.
 
     Raises
     ------
@@ -53,16 +53,16 @@ def block_weights(n_steps: int, block: int, rng: np.random.Generator) -> NDArray
 def block_means(
     series: NDArray[np.floating], block: int, replicates: int, rng: np.random.Generator
 ) -> NDArray[np.float64]:
-    """Means of a series over time, drawn again by blocks.
+    """Means over time of a series that is resampled by blocks.
 
     Parameters
     ----------
     series : (n_steps, ...) array
-        Anything observed at each step: densities, or mixing curves by the step they start at.
+        Values at each step: densities, or mixing curves by their first step.
     block : int
         Steps in a block.
     replicates : int
-        Means wanted.
+        Number of means.
     rng : numpy Generator
         Draws the blocks.
 
@@ -85,14 +85,14 @@ def block_chains(
     replicates: int,
     rng: np.random.Generator,
 ) -> NDArray[np.float64]:
-    """Whatever a chain gives, from chains learned again on blocks of the learning window.
+    """Results of chains learned from resampled blocks of the learning window.
 
     Parameters
     ----------
     learn : callable
-        From how many times each step counts, (n_steps,), to a chain: `registry.learn` with ``step_weights``.
+        From step weights, (n_steps,), to a chain: `registry.learn` with ``step_weights``.
     evaluate : callable
-        From a chain to an array, always of one shape: mixing curves, a density.
+        From a chain to an array, always of the same shape: mixing curves, a density.
     n_steps : int
         Steps that start in the learning window, ``n_frames - lag``.
     block : int
@@ -112,7 +112,7 @@ def block_chains(
 def band(
     samples: NDArray[np.float64], level: float = 0.95
 ) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
-    """Ends of the middle part of the replicates (percentile band).
+    """Ends of the central interval of the replicates (percentile band).
 
     Parameters
     ----------
@@ -135,12 +135,12 @@ def correlation_steps(series: NDArray[np.floating]) -> float:
     Parameters
     ----------
     series : (n_steps,) array
-        Such as the share of the particles that are left, or the height of their centre of mass.
+        Such as the share of the particles in the left half, or the height of their centre of mass.
 
     Returns
     -------
     float
-        At least 1. Blocks should be several times as long.
+        At least 1; blocks should be several times as long.
     """
     if np.ptp(series) == 0:
         return 1.0  # and not what round-off of the mean leaves
@@ -168,14 +168,14 @@ def block_steps(correlation: float, n_steps: int) -> int:
 
 
 def block_length(frames: Frames, split_x_m: float, lag: int) -> int:
-    """Length of the blocks that are drawn again: longer than the bed remembers, short against the window.
+    """Steps in a block for a window of frames: `block_steps` of the longer of `memory` and a lag.
 
     Parameters
     ----------
     frames : Frames
         The learning window.
     split_x_m : float
-        The line between left and right [m].
+        Line between left and right [m].
     lag : int
         Frames in a step of the chain.
 
@@ -187,31 +187,31 @@ def block_length(frames: Frames, split_x_m: float, lag: int) -> int:
     return block_steps(max(memory(frames, split_x_m), lag), len(frames.times_s) - lag)
 
 
-# blocks several times as long as the bed remembers, but at least this many of them in the window
+# length of a block in correlation times, and least number of blocks in a window
 BLOCK_CORRELATIONS, FEWEST_BLOCKS = 3, 5
 
 
 REPLICATES = 400
 
 
-# of the bands only: the same data give the same band
+# seed of the bands: the same data give the same band
 BAND_SEED = 11
 
 
 def memory(frames: Frames, split_x_m: float) -> float:
-    """Frames after which the bed has forgotten where it was.
+    """Correlation time of the bed [frames].
 
     Parameters
     ----------
     frames : Frames
         The learning window.
     split_x_m : float
-        The line between left and right [m].
+        Line between left and right [m].
 
     Returns
     -------
     float
-        The longer of the integrated correlation times of the share left and of the mean height [1].
+        The longer of the `correlation_steps` of the share in the left half and of the mean height.
     """
     left = np.array([(x < split_x_m).mean() for x in frames.x_m])
     height = np.array([z.mean() for z in frames.z_m])

@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Errors of curves from several starts and runs, beside the spread of the DEM itself, with intervals.
+"""Errors of curves from several starts and runs, and deviations of the DEM's curves, with intervals.
 
-Curves of different starts end at different times: arrays are padded with NaN, which nothing counts.
+Curves of different starts end at different times: arrays are padded with NaN, which no function counts.
 """
 
 from collections.abc import Callable, Sequence
@@ -14,7 +14,7 @@ from bedchain.uncertainty.bands import band
 
 Array = NDArray[np.float64]
 
-# columns of the curves (in the order of `mixing.GROUPS`) that are summed up together
+# columns of the curves (in the order of `mixing.GROUPS`) that make up each summary
 SIDES = {
     "left": (0,),
     "right": (1,),
@@ -36,25 +36,25 @@ def stacked(curves: Sequence[Array]) -> Array:
 
 
 def resampled(run: NDArray[np.integer], replicates: int, rng: np.random.Generator) -> Array:
-    """How often each curve counts in each replicate: runs drawn again, and in each of them its curves.
+    """Number of times that each curve counts in each replicate: runs are drawn, then curves of each run.
 
     Parameters
     ----------
     run : (n_curves,) int array
-        Run of each curve; with one run, its curves alone are drawn.
+        Run of each curve; with a single run only its curves are drawn.
     replicates : int
     rng : numpy Generator
 
     Returns
     -------
     (replicates, n_curves) array
-        One replicate sums to ``n_curves`` where all runs have equally many.
+        A replicate sums to ``n_curves`` if all runs have as many curves.
     """
-    members = [np.flatnonzero(run == one) for one in np.unique(run)]
+    members = [np.flatnonzero(run == number) for number in np.unique(run)]
     weights = np.zeros((replicates, run.size))
     for row in weights:
-        for one in rng.integers(0, len(members), len(members)):
-            np.add.at(row, rng.choice(members[one], members[one].size), 1.0)
+        for drawn in rng.integers(0, len(members), len(members)):
+            np.add.at(row, rng.choice(members[drawn], members[drawn].size), 1.0)
     return weights
 
 
@@ -64,7 +64,7 @@ def signed(error: Array, weights: Array | None = None) -> Array:
     Parameters
     ----------
     error : (n_curves, n_times, n_columns) array
-        Model less DEM [1].
+        Model - DEM [1].
     weights : (n_replicates, n_curves) array, optional
         From `resampled`.
     """
@@ -77,7 +77,7 @@ def rms(error: Array, weights: Array | None = None) -> Array:
 
 
 def mean_size(error: Array, weights: Array | None = None) -> Array:
-    """How large the mean over times and columns of one curve is, as a root mean square over the curves."""
+    """Root mean square over the curves of their means over times and columns; arguments as `signed`."""
     counted = _counted(error)
     means = np.divide(np.nansum(error, axis=(1, 2)), counted, out=np.zeros(len(error)), where=counted > 0)
     return np.sqrt(_weighted(means**2, (counted > 0).astype(float), weights))
@@ -86,7 +86,7 @@ def mean_size(error: Array, weights: Array | None = None) -> Array:
 def interval(
     summary: Callable[[Array, Array | None], Array], error: Array, weights: Array
 ) -> tuple[float, float]:
-    """95 % interval of a summary over starts and runs; NaN where fewer than two curves say anything.
+    """95 % interval of a summary over starts and runs; NaN with fewer than two curves of finite values.
 
     Parameters
     ----------
@@ -102,48 +102,48 @@ def interval(
     """
     if (_counted(error) > 0).sum() < 2:
         return float("nan"), float("nan")
-    found = summary(error, weights)
-    low, high = band(found[np.isfinite(found)])
+    samples = summary(error, weights)
+    low, high = band(samples[np.isfinite(samples)])
     return float(low), float(high)
 
 
 def deviations(observed: Array, group: NDArray[np.integer]) -> Array:
-    """Distance of each curve of the DEM from the mean of its group, scaled so that its square is unbiased.
+    """Deviation of each curve of the DEM from the mean of its group, scaled so that its square is unbiased.
 
-    With repeated runs a group is what started at the same time in each of them; without, all starts.
-    What is left is the noise floor: a model that knew the mean of all possible runs would err by as much.
-    A single other run taken for a model would err sqrt(2) times as much.
+    With repeated runs a group is the curves that start at the same time, without them all curves. The rms of
+    the deviations is the noise floor: the rms error of the exact mean of all possible runs. The error of
+    another single run is sqrt(2) times as large.
 
     Parameters
     ----------
     observed : (n_curves, n_times, n_columns) array
         Curves of the DEM [1].
     group : (n_curves,) int array
-        Curves that are compared with each other.
+        Group of each curve.
 
     Returns
     -------
     array of the same shape
-        NaN where fewer than two curves of the group are left.
+        NaN at times with fewer than two curves of the group.
     """
-    found = np.full(observed.shape, np.nan)
-    for one in np.unique(group):
-        members = group == one
+    scaled = np.full(observed.shape, np.nan)
+    for label in np.unique(group):
+        members = group == label
         curves = observed[members]
         number = np.isfinite(curves).sum(axis=0)
         mean = np.divide(
             np.nansum(curves, axis=0), number, out=np.full(number.shape, np.nan), where=number > 1
         )
-        found[members] = (curves - mean) * np.sqrt(number / np.maximum(number - 1, 1))
-    return found
+        scaled[members] = (curves - mean) * np.sqrt(number / np.maximum(number - 1, 1))
+    return scaled
 
 
-def distances(one: Array, two: Array) -> Array:
-    """Total variation of pairs of densities, NaN where one of them is missing.
+def distances(first: Array, second: Array) -> Array:
+    """Total variation of pairs of densities, NaN where a density is missing.
 
     Parameters
     ----------
-    one, two : (n_curves, n_moments, n_cells) array
+    first, second : (n_curves, n_moments, n_cells) array
         Shares [1].
 
     Returns
@@ -151,15 +151,15 @@ def distances(one: Array, two: Array) -> Array:
     (n_curves, n_moments, 1) array
         0 to 1 [1].
     """
-    found = np.full((*one.shape[:2], 1), np.nan)
-    for where in np.ndindex(*one.shape[:2]):
-        if np.isfinite(one[where]).all() and np.isfinite(two[where]).all():
-            found[where] = total_variation(one[where], two[where])
-    return found
+    distance = np.full((*first.shape[:2], 1), np.nan)
+    for place in np.ndindex(*first.shape[:2]):
+        if np.isfinite(first[place]).all() and np.isfinite(second[place]).all():
+            distance[place] = total_variation(first[place], second[place])
+    return distance
 
 
 def mean_of_others(densities: Array, group: NDArray[np.integer]) -> Array:
-    """Mean density of the other members of each curve's group, NaN where there is none.
+    """Mean density of the other members of each curve's group, NaN without any.
 
     Parameters
     ----------
@@ -171,18 +171,18 @@ def mean_of_others(densities: Array, group: NDArray[np.integer]) -> Array:
     -------
     array of the same shape
     """
-    found = np.full(densities.shape, np.nan)
-    for one in range(len(densities)):
-        others = densities[(group == group[one]) & (np.arange(len(densities)) != one)]
+    means = np.full(densities.shape, np.nan)
+    for curve in range(len(densities)):
+        others = densities[(group == group[curve]) & (np.arange(len(densities)) != curve)]
         number = np.isfinite(others).sum(axis=0)
-        found[one] = np.divide(
+        means[curve] = np.divide(
             np.nansum(others, axis=0), number, out=np.full(number.shape, np.nan), where=number > 0
         )
-    return found
+    return means
 
 
 def fluctuation(curves: Array, half_width: int) -> Array:
-    """Curves less their own running mean: what bubbles do to them, without the mean decay.
+    """Curves minus their running means: the fluctuations by bubbles, without the mean decay.
 
     Parameters
     ----------
@@ -193,7 +193,7 @@ def fluctuation(curves: Array, half_width: int) -> Array:
     Returns
     -------
     (n_curves, n_times - 2 half_width, n_columns) array
-        Its `rms` is the size of the fluctuations; without times where the curves are too short.
+        Its `rms` is the size of the fluctuations; no times if the curves are too short.
     """
     width = 2 * half_width + 1
     if curves.shape[1] < width:

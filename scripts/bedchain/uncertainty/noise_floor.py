@@ -8,21 +8,21 @@ from scipy import stats
 from bedchain.uncertainty.deviations import deviations, rms
 
 LEVEL = 0.95
-# of sums of shares; realisations closer than this are one and the same
+# of sums of shares; realisations closer than this are the same
 ROUND_OFF = 1e-12
 
 
 def floor_of(curves: NDArray[np.float64]) -> float:
     """Noise floor of some columns of curves: the rms of their `deviations`.
 
-    It is the rms error that the bed's exact mean would still have against a single realisation, and the rms
-    difference between two realisations over sqrt(2).
+    It is the rms error of the bed's exact mean against a single realisation, and the rms difference between
+    two realisations over sqrt(2).
 
     Parameters
     ----------
     curves : (n_realisations, n_times, n_columns) ndarray
-        By realisation, two at least, from the first frame after the start: in the frame of the start, where
-        all curves are 1 by definition, realisations cannot differ, and no floor and no error counts it [1].
+        At least two realisations, from the first frame after the start [1]. At the start all curves are 1
+        by definition: no floor and no error counts it.
     """
     return float(rms(deviations(curves, np.zeros(len(curves), np.int64))))
 
@@ -30,8 +30,8 @@ def floor_of(curves: NDArray[np.float64]) -> float:
 def noise_floor(curves: NDArray[np.float64]) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
     """`floor_of` each column, with its 95 % interval.
 
-    The interval is that of a variance of n_realisations - 1 degrees of freedom (chi square): one for each
-    further curve, since the times of a curve go up and down together; it is rather too wide than too narrow.
+    The interval is that of a variance of n_realisations - 1 degrees of freedom (chi square), as if the times
+    of a curve were fully correlated: it is rather too wide than too narrow.
 
     Parameters
     ----------

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Whether a bed is statistically stationary: the drift of what is seen of it, against its own block error."""
+"""Stationarity of a bed: drifts of its series, with intervals from moving blocks."""
 
 from typing import NamedTuple
 
@@ -12,7 +12,7 @@ from bedchain.uncertainty.bands import block_steps, correlation_steps
 
 LEVEL = 0.95
 REPLICATES = 1000
-# of the intervals only: the same series gives the same interval
+# seed of the intervals: the same series gives the same interval
 SEED = 13
 
 
@@ -24,7 +24,7 @@ class Drift(NamedTuple):
     mean : float
         Of the series, in its unit.
     change : float
-        Of the line from the first to the last time, in the same unit.
+        Of the line from the first to the last time, in its unit.
     low, high : float
         Ends of the interval of the change.
     block : int
@@ -39,16 +39,15 @@ class Drift(NamedTuple):
 
     @property
     def stationary(self) -> bool:
-        """Whether the interval holds 0: the change is no more than what chance makes of a steady bed."""
+        """True if the interval holds 0: a steady bed may change as much by chance."""
         return self.low <= 0 <= self.high
 
 
 def drift(series: NDArray[np.floating], level: float = LEVEL) -> Drift:
     """Drift of an evenly spaced series, by least squares, with the interval of moving blocks.
 
-    What is left of the series beside the line is drawn again in blocks three correlation times long (Kuensch
-    1989), at most a fifth of the series, and gets a line of its own each time: the changes of these lines
-    are what chance alone makes.
+    The residuals of the line are resampled in blocks of three correlation times (Kuensch 1989), at most a
+    fifth of the series. A line is fitted to each resampled series: its change is due to chance alone.
 
     Parameters
     ----------
@@ -72,7 +71,7 @@ def drift(series: NDArray[np.floating], level: float = LEVEL) -> Drift:
     first = rng.integers(0, len(rest) - block + 1, (REPLICATES, n_blocks))
     drawn = (first[:, :, None] + np.arange(block)).reshape(REPLICATES, -1)[:, : len(rest)]
     noise = rest[drawn] @ weights
-    # few blocks: two degrees of freedom went into the line, and their spread is itself uncertain (Student)
+    # few blocks: the line takes two degrees of freedom, and the spread is itself uncertain (Student)
     free = n_blocks - 2
     noise *= np.sqrt(n_blocks / free) * stats.t.ppf((1 + level) / 2, free) / stats.norm.ppf((1 + level) / 2)
     low, high = np.quantile(noise, [(1 - level) / 2, (1 + level) / 2])
@@ -92,10 +91,10 @@ def drift_table(
     series : dict of str to (unit, interval [s], values)
         By quantity.
     profile : (n_frames, n_rows) array
-        Voidage [1]; rows that never hold a particle are left out. So that all rows together raise a false
-        alarm in one of twenty steady beds, each has a level of 0.05 / n_rows.
+        Voidage [1]; rows without any particle are left out. Each row has the level 1 - 0.05 / n_rows, so
+        that 5 % of steady beds have a row that is not stationary by chance.
     heights_m : (n_rows,) array
-        Middles of the rows [m].
+        Centres of the rows [m].
     interval_s : float
         Between the frames of the profile [s].
 
@@ -112,9 +111,9 @@ def drift_table(
     return pd.DataFrame(rows)
 
 
-def _row(quantity: str, height_m: float, found: Drift, unit: str, step_s: float) -> dict[str, object]:
+def _row(quantity: str, height_m: float, line: Drift, unit: str, step_s: float) -> dict[str, object]:
     return {
-        "quantity": quantity, "height_m": height_m, "mean": found.mean, "drift": found.change,
-        "ci_low": found.low, "ci_high": found.high, "unit": unit, "block_s": found.block * step_s,
-        "stationary_1": int(found.stationary),
+        "quantity": quantity, "height_m": height_m, "mean": line.mean, "drift": line.change,
+        "ci_low": line.low, "ci_high": line.high, "unit": unit, "block_s": line.block * step_s,
+        "stationary_1": int(line.stationary),
     }  # fmt: skip

@@ -54,8 +54,8 @@ def test_the_dynamic_chain_recovers_the_persistent_walk_from_frames():
     start = framed(np.array([[99, 101], [100, 100]]), grid)
     expected = {"dynamic": (PERSISTENT_MSD, 0.03), "static": (50.0, 0.03)}
     for name, (displacement, tolerance) in expected.items():
-        found = mean_square(registry.learn(name, frames, grid), start, 100, 50)
-        assert found == pytest.approx(displacement, rel=tolerance), name
+        mean_square_displacement = mean_square(registry.learn(name, frames, grid), start, 100, 50)
+        assert mean_square_displacement == pytest.approx(displacement, rel=tolerance), name
 
 
 @pytest.mark.parametrize("estimator", list(ESTIMATORS))
@@ -117,8 +117,8 @@ def test_dynamic_matrix_agrees_with_a_loop_over_pairs():
     for p in range(path.shape[1]):
         same = (path[:-2] == path[10, p]) & (path[1:-1] == path[11, p])
         expected += np.bincount(path[2:][same], minlength=grid.n_cells) / same.sum()
-    found = chain.densities(start, np.ones((1, path.shape[1]), bool), [1])[0, 0]
-    assert np.allclose(found, expected, atol=1e-9)
+    densities = chain.densities(start, np.ones((1, path.shape[1]), bool), [1])[0, 0]
+    assert np.allclose(densities, expected, atol=1e-9)
 
 
 def test_a_pair_entered_only_at_the_end_moves_on_as_its_cell_does():

@@ -84,11 +84,11 @@ def test_the_long_run_density_is_that_of_the_bed():
         frames[:, frame] = np.clip(0.1 + away, 0, 0.2)
         away = keep * away + rng.normal(0, noise, away.shape)
     seen = Frames(np.arange(300) * INTERVAL, *frames, grid.cell_of(*frames))
-    found = registry.learn("jump", seen, grid).long_run_density(seen).reshape(20, 20)
+    density = registry.learn("jump", seen, grid).long_run_density(seen).reshape(20, 20)
     bed = np.bincount(seen.cells.ravel(), minlength=400).reshape(20, 20)
     for axis in (0, 1):
-        assert total_variation(found.sum(axis=axis), bed.sum(axis=axis)) < 0.015
-    assert total_variation(found.ravel(), bed.ravel()) < 0.03
+        assert total_variation(density.sum(axis=axis), bed.sum(axis=axis)) < 0.015
+    assert total_variation(density.ravel(), bed.ravel()) < 0.03
 
 
 def test_a_wall_layer_loses_particles_by_no_more_than_is_said():

@@ -39,21 +39,26 @@ def with_states_apart(matrix: sparse.csr_array) -> sparse.csr_array:
     return sparse.csr_array(whole)
 
 
+def long_run_density(matrix: sparse.csr_array) -> np.ndarray:
+    """Of a chain that reaches all states from each: the start does not matter."""
+    return matrix_analysis.long_run_density(matrix, np.arange(matrix.shape[0]))
+
+
 def test_second_eigenvalue_of_the_reflecting_walk():
     for matrix in (reflecting_walk(20), with_states_apart(reflecting_walk(20))):
-        found = matrix_analysis.leading_eigenvalues(matrix, 3)
-        assert found[0] == pytest.approx(1)
-        assert found[1].real == pytest.approx(0.99384417, abs=5e-9)
+        eigenvalues = matrix_analysis.leading_eigenvalues(matrix, 3)
+        assert eigenvalues[0] == pytest.approx(1)
+        assert eigenvalues[1].real == pytest.approx(0.99384417, abs=5e-9)
         assert matrix_analysis.implied_timescales(matrix, 0.025, 1)[0] == pytest.approx(
-            -0.025 / np.log(found[1].real)
+            -0.025 / np.log(eigenvalues[1].real)
         )
         assert matrix_analysis.mixing_time(matrix, 0.025) == pytest.approx(0.025 / (1 - 0.99384417), rel=1e-5)
 
 
 def test_second_eigenvalue_of_the_ring_is_complex():
-    found = matrix_analysis.leading_eigenvalues(ring(8, 0.75), 3)
-    assert abs(found[1]) == pytest.approx(0.9434855817366555, abs=1e-12)
-    assert abs(found[1].imag) > 0.1 and abs(found[2]) == pytest.approx(abs(found[1]))
+    eigenvalues = matrix_analysis.leading_eigenvalues(ring(8, 0.75), 3)
+    assert abs(eigenvalues[1]) == pytest.approx(0.9434855817366555, abs=1e-12)
+    assert abs(eigenvalues[1].imag) > 0.1 and abs(eigenvalues[2]) == pytest.approx(abs(eigenvalues[1]))
     assert matrix_analysis.mixing_time(ring(8, 1.0), 1.0) == np.inf
 
 
@@ -73,26 +78,26 @@ def test_timescales_and_density_agree_with_deeptime():
             analysis.timescales(matrix.toarray(), tau=2, k=5),
         )
         assert ours == pytest.approx(theirs[1:], abs=SOLVER)
-        density = matrix_analysis.stationary_density(matrix)
+        density = long_run_density(matrix)
         assert np.abs(density - analysis.stationary_distribution(matrix.toarray())).max() < SOLVER
 
 
 def test_density_by_iteration_agrees_with_the_direct_one(monkeypatch):
     for matrix in (random_matrix(5, 60), ring(60, 1.0), reflecting_walk(60, 0.3, 0.2)):
-        direct = matrix_analysis.stationary_density(matrix)
+        direct = long_run_density(matrix)
         monkeypatch.setattr(matrix_analysis, "DIRECT_STATES", 5)
-        assert np.abs(matrix_analysis.stationary_density(matrix) - direct).max() < 1e-7
+        assert np.abs(long_run_density(matrix) - direct).max() < 1e-7
         monkeypatch.undo()
 
 
 def test_density_without_convergence_is_refused(monkeypatch):
     monkeypatch.setattr(matrix_analysis, "STATIONARY_TOLERANCE", 0.0)
     with pytest.raises(DataError, match="did not converge"):
-        matrix_analysis.stationary_density(random_matrix(1))
+        long_run_density(random_matrix(1))
 
 
 def test_density_of_a_walk_with_drift_is_geometric():
-    density = matrix_analysis.stationary_density(reflecting_walk(12, 0.2, 0.4))
+    density = long_run_density(reflecting_walk(12, 0.2, 0.4))
     assert density[1:] / density[:-1] == pytest.approx(np.full(11, 0.5))
 
 
@@ -102,8 +107,8 @@ def test_long_run_density_weighs_closed_classes_by_what_they_catch():
     matrix[0, [0, 1, 2]] = 0.5, 0.2, 0.3
     matrix[1, 1] = matrix[2, 3] = matrix[3, 2] = matrix[4, 4] = 1
     start = np.array([2.0, 0, 0, 1, 1])
-    found = matrix_analysis.long_run_density(sparse.csr_array(matrix), start)
-    assert found == pytest.approx([0, 0.2, 0.275, 0.275, 0.25])
+    density = matrix_analysis.long_run_density(sparse.csr_array(matrix), start)
+    assert density == pytest.approx([0, 0.2, 0.275, 0.275, 0.25])
 
 
 def test_first_passage_agrees_with_deeptime_and_by_hand():
@@ -135,8 +140,3 @@ def test_first_passage_is_infinite_where_the_target_may_be_missed():
         np.inf,
     ]
     assert matrix_analysis.first_passage_steps(matrix, np.arange(4) == 3).tolist() == [np.inf, np.inf, 1, 0]
-
-
-def test_residence_by_hand():
-    matrix = sparse.csr_array(np.array([[0.75, 0.25, 0], [0.5, 0.5, 0], [0, 0, 1]]))
-    assert matrix_analysis.residence_steps(matrix).tolist() == [4, 2, np.inf]

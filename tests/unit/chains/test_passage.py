@@ -5,7 +5,7 @@ from scipy import sparse
 
 from bedchain.chains import registry
 from bedchain.chains.markov_chain import MarkovChain
-from bedchain.chains.matrix_analysis import residence_steps, stationary_density
+from bedchain.chains.matrix_analysis import long_run_density
 from bedchain.chains.passage import arrived, passage_time, residence_in_cells, top_row
 from bedchain.trajectory.frames import Frames
 from bedchain.trajectory.grid import Grid
@@ -30,9 +30,9 @@ def reflecting_walk(n: int) -> sparse.csr_array:
 
 def test_residence_of_a_static_chain_is_that_of_its_states():
     chain = column_of(reflecting_walk(6))
-    found, density = residence_in_cells(chain, np.ones(6))
-    assert found == pytest.approx(0.5 * residence_steps(chain.matrix), rel=SOLVER)
-    assert density == pytest.approx(stationary_density(chain.matrix), abs=SOLVER)
+    residence, density = residence_in_cells(chain, np.ones(6))
+    assert residence == pytest.approx(0.5 / (1 - chain.matrix.diagonal()), rel=SOLVER)
+    assert density == pytest.approx(long_run_density(chain.matrix, np.ones(6)), abs=SOLVER)
 
 
 def test_residence_counts_a_cell_once_however_many_states_it_has():
@@ -43,14 +43,14 @@ def test_residence_counts_a_cell_once_however_many_states_it_has():
     frames, grid = Frames(np.arange(120) * 0.1, place, place, cells), Grid(0.01, 0.02, 1, 2)
     chain = registry.learn("dynamic", frames, grid)
     start = np.bincount(chain.states(frames), minlength=chain.matrix.shape[0]).astype(float)
-    found, density = residence_in_cells(chain, start)
-    assert found == pytest.approx([0.3, 0.1], rel=0.02)
+    residence, density = residence_in_cells(chain, start)
+    assert residence == pytest.approx([0.3, 0.1], rel=0.02)
     assert density == pytest.approx([0.75, 0.25], abs=0.01)
 
 
 def test_residence_without_a_way_out_is_infinite_and_without_particles_undefined():
-    found, density = residence_in_cells(column_of(sparse.csr_array(np.eye(3))), np.array([1.0, 1, 0]))
-    assert found[:2].tolist() == [np.inf, np.inf] and np.isnan(found[2])
+    residence, density = residence_in_cells(column_of(sparse.csr_array(np.eye(3))), np.array([1.0, 1, 0]))
+    assert residence[:2].tolist() == [np.inf, np.inf] and np.isnan(residence[2])
     assert density.tolist() == [0.5, 0.5, 0]
 
 

@@ -130,9 +130,9 @@ def test_monte_carlo_agrees_with_the_exact_mean():
     paths = propagate.simulate(matrix, start, 100, np.random.default_rng(4))
     exact = propagate.propagate(matrix, np.bincount(start, minlength=20) / n, [1, 10, 100])[:, 0]
     for share, step in zip(exact, (1, 10, 100), strict=True):
-        found = np.bincount(paths[step], minlength=20) / n
+        counted = np.bincount(paths[step], minlength=20) / n
         error = np.sqrt(share * (1 - share) / n)
-        assert (np.abs(found - share) <= SIGMAS * error + 1e-15).all()
+        assert (np.abs(counted - share) <= SIGMAS * error + 1e-15).all()
 
 
 def test_an_unlikely_entry_is_neither_skipped_nor_favoured():

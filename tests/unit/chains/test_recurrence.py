@@ -33,7 +33,7 @@ def test_jumps_lead_to_the_most_alike_frames_far_enough_away():
     options = {"segment_s": 0.1, "separation_s": 0.25, "neighbours": 3}
     chain = registry.learn("recurrence", frames, grid, **options)
     path = chain.path(frames.part(slice(20, 22)), 2000, np.random.default_rng(3))
-    between, jumps = chain.likeness.distances(), 0
+    between, jumps = chain.fields.distances(), 0
     assert path[0] == 21 and min(path) >= 0 and max(path) <= 58
     for now, after in zip(path, path[1:], strict=False):
         if after == now + 1:
@@ -71,7 +71,7 @@ def test_a_bed_that_recurs_is_followed_beyond_its_window():
     assert np.abs(chain.mixing(start, 0.1, 0.04, steps) - known).max() < 0.01
     path = places(chain, start, steps)
     assert np.abs(path[:, 0] - frames.x_m[96:]).max() < 1e-4
-    # without likeness the phase is lost
+    # without similar frames the phase is lost
     other = registry.learn("recurrence", frames.part(slice(0, 51)), grid, order="shuffled")
     assert np.abs(other.mixing(start, 0.1, 0.04, steps) - known).max() > 0.2
 
@@ -128,7 +128,7 @@ def test_steps_of_no_weight_are_never_played(order):
     [
         ({"order": "backwards"}, "order 'backwards' is unknown: choose one of recurrence, shuffled, replay"),
         ({"neighbours": 0}, "must be positive"),
-        ({"separation_s": 1.0}, "no frame 1 s or more away"),
+        ({"separation_s": 1.0}, "no other 1 s or more away"),
     ],
 )
 def test_impossible_settings_are_refused(options, said):

@@ -27,10 +27,10 @@ def claims(tmp_path):
 
 def test_claims_hold_or_not_and_say_why(claims):
     measured = pd.DataFrame([metric("share", "dem", 0.59), metric("ratio", "static", 4000.0)])
-    found = agreement(read_claims(claims), measured)
-    assert found["within"].tolist() == ["yes", "no"]
-    assert found["paper"].tolist() == [0.5, 80] and found["ours"].tolist() == [0.59, 4000]
-    assert found["why"].tolist() == ["a moment", "another code"]
+    table = agreement(read_claims(claims), measured)
+    assert table["within"].tolist() == ["yes", "no"]
+    assert table["paper"].tolist() == [0.5, 80] and table["ours"].tolist() == [0.59, 4000]
+    assert table["why"].tolist() == ["a moment", "another code"]
 
 
 def test_what_was_not_measured_or_in_another_unit_is_an_error(claims):
@@ -50,19 +50,21 @@ def test_swings_by_hand():
     zigzag = np.repeat(np.array([1.0, 0.5, 0.8, 0.6])[:, None], 4, axis=1)
     smooth = np.repeat(np.array([1.0, 0.7])[:, None], 4, axis=1)
     table = pd.concat([curve_table(times, "dem", zigzag), curve_table(times[::2], "static", smooth)])
-    found = {row["quantity"]: row["value"] for row in swing_metrics(table)}
+    ratios = {row["quantity"]: row["value"] for row in swing_metrics(table)}
     # at the chain's own times the DEM goes down by 0.2
-    assert found == {f"swings_over_dem_{name}": pytest.approx(1.5) for name in ("left", "right", "low", "up")}
+    assert ratios == {
+        f"swings_over_dem_{name}": pytest.approx(1.5) for name in ("left", "right", "low", "up")
+    }
 
 
 def test_costs_by_hand():
     stages = ["dem", "static_count", "static_matrix", "static_monte_carlo"]
     stages += ["dynamic_count", "dynamic_matrix", "dynamic_monte_carlo"]
     timing = pd.DataFrame({"stage": stages, "wall_s": [7200.0, 1.0, 1.0, 2.0, 9.0, 11.0, 4.0]})
-    found = {
+    costs = {
         (row["quantity"], row["source"]): row["value"] for row in cost_metrics(timing, ["static", "dynamic"])
     }
-    assert found == {
+    assert costs == {
         ("dem_time", "dem"): 2.0,
         ("dem_over_chain_time", "static"): 1800.0,
         ("dem_over_chain_time", "dynamic"): 300.0,

@@ -32,10 +32,10 @@ def test_values_inside_their_tolerance_pass(tmp_path):
 @pytest.mark.parametrize(
     ("row", "said"),
     [
-        ("height,dem,0.11,0.009,m\n", "height of dem is 0.1 m, expected 0.11 +- 0.009"),
-        ("height,dem,0.1,0.1,mm\n", "height of dem is in m, expected in mm"),
-        ("height,dynamic,0.1,0.1,m\n", "height of dynamic is missing"),
-        ("drop,dem,500,1e9,Pa\n", "drop of dem is nan Pa, expected 500 +- 1e+09"),
+        ("height,dem,0.11,0.009,m\n", "height of dem [m] is 0.1, expected 0.11 +- 0.009"),
+        ("height,dem,0.1,0.1,mm\n", "height of dem [mm] is nan, expected 0.1 +- 0.1"),
+        ("height,dynamic,0.1,0.1,m\n", "height of dynamic [m] is nan, expected 0.1 +- 0.1"),
+        ("drop,dem,500,1e9,Pa\n", "drop of dem [Pa] is nan, expected 500 +- 1e+09"),
     ],
 )
 def test_what_is_off_or_absent_is_named(tmp_path, row, said):
@@ -45,7 +45,7 @@ def test_what_is_off_or_absent_is_named(tmp_path, row, said):
 @pytest.mark.parametrize(
     ("rows", "said"),
     [
-        ("height,dem,0.1,0,m\n", "tolerance must be positive"),
+        ("height,dem,0.1,0,m\n", "a tolerance is not positive"),
         ("height,dem,0.1,1,m\nheight,dem,0.2,1,m\n", "height of dem is there twice"),
     ],
 )
@@ -62,5 +62,5 @@ def test_a_missing_column_is_refused(tmp_path):
 
 
 def test_a_comma_too_many_is_told_with_its_line(tmp_path):
-    with pytest.raises(UserError, match="line 3.*put a text with a comma into quotes"):
+    with pytest.raises(UserError, match="line 3.*put texts with a comma into quotes"):
         expected(tmp_path, "height,dem,0.11,0.011,m\nheight,static,0.12,0.001,m,one, two\n")

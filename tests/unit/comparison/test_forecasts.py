@@ -48,7 +48,7 @@ def of_model(name: str, frames: Frames, lag: int, gaps: list[int], weights: np.n
 def test_counted_shares_agree_with_a_plain_loop():
     frames, gaps = walk_frames(40, 9), [1, 3, 4]
     weights = np.array([2, 0, 1, 1, 3, 0, 0, 2, 1])
-    found = counted(count_sides(frames, *SPLITS, gaps), weights)
+    shares = counted(count_sides(frames, *SPLITS, gaps), weights)
     for row, gap in enumerate(gaps):
         began, stayed = np.zeros(4), np.zeros(4)
         for first in range(10 - gap):
@@ -59,7 +59,7 @@ def test_counted_shares_agree_with_a_plain_loop():
                 )
                 began += now.sum(axis=1)
                 stayed += (now & later).sum(axis=1)
-        assert found[row] == pytest.approx(stayed / began, abs=ROUND_OFF)
+        assert shares[row] == pytest.approx(stayed / began, abs=ROUND_OFF)
 
 
 @pytest.mark.parametrize("lag", [1, 2])
@@ -127,6 +127,6 @@ def test_a_gap_as_long_as_the_window_is_refused():
 @pytest.mark.parametrize("n_keys", [50, LISTED_KEYS + 1])
 def test_keys_are_ranked_alike_from_a_list_and_by_sorting(n_keys):
     keys = np.array([[7, 49, 7], [0, 12, 49]])
-    found, which = ranked(keys, n_keys)
-    assert found.tolist() == [0, 7, 12, 49]
-    assert which.tolist() == [[1, 3, 1], [0, 2, 3]]
+    distinct, ranks = ranked(keys, n_keys)
+    assert distinct.tolist() == [0, 7, 12, 49]
+    assert ranks.tolist() == [[1, 3, 1], [0, 2, 3]]

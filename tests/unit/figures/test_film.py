@@ -50,7 +50,7 @@ def test_particles_of_a_chain_are_drawn_in_their_cells():
 def test_voidage_counts_the_particles_of_each_cell():
     x, z = np.array([[0.005, 0.005, 0.015]] * 3), np.array([[0.005, 0.006, 0.015]] * 3)
     frames = Frames(np.array([0.0, 1.0, 2.0]), x, z, np.zeros((3, 3), np.int32))
-    found = list(voidages(frames, 2, 0.02, 0.02, 0.01, DIAMETER, DIAMETER))
-    one = np.pi / 6 * DIAMETER**3 / (0.01 * 0.01 * DIAMETER)
-    assert len(found) == 2
-    np.testing.assert_allclose(found[0], [[1 - 2 * one, 1], [1, 1 - one]])
+    pictures = list(voidages(frames, 2, 0.02, 0.02, 0.01, DIAMETER, DIAMETER))
+    solids = np.pi / 6 * DIAMETER**3 / (0.01 * 0.01 * DIAMETER)
+    assert len(pictures) == 2
+    np.testing.assert_allclose(pictures[0], [[1 - 2 * solids, 1], [1, 1 - solids]])

@@ -44,9 +44,9 @@ def test_weights_count_curves_as_often_as_they_say():
     twice = stacked([curves[0], curves[2], curves[2]])
     weights = np.array([[1.0, 0.0, 2.0], [1.0, 1.0, 1.0]])
     for summary in (signed, rms, mean_size):
-        found = summary(stacked(curves), weights)
-        assert found[0] == pytest.approx(float(summary(twice)), abs=ROUND_OFF)
-        assert found[1] == pytest.approx(float(summary(stacked(curves))), abs=ROUND_OFF)
+        values = summary(stacked(curves), weights)
+        assert values[0] == pytest.approx(float(summary(twice)), abs=ROUND_OFF)
+        assert values[1] == pytest.approx(float(summary(stacked(curves))), abs=ROUND_OFF)
 
 
 def test_runs_are_drawn_whole_and_their_curves_inside_them():
@@ -76,8 +76,8 @@ def test_a_single_curve_has_no_interval():
 
 def test_identical_repeats_have_no_noise_floor():
     curve = np.random.default_rng(6).random((7, 4))
-    found = deviations(np.stack([curve, curve, curve]), np.zeros(3, int))
-    assert np.abs(found).max() < ROUND_OFF
+    scaled = deviations(np.stack([curve, curve, curve]), np.zeros(3, int))
+    assert np.abs(scaled).max() < ROUND_OFF
     shares = np.abs(np.random.default_rng(7).random((1, 3, 5)))
     same = np.repeat(shares, 3, axis=0)
     assert np.abs(distances(same, mean_of_others(same, np.zeros(3, int)))).max() < ROUND_OFF
@@ -87,16 +87,16 @@ def test_noise_floor_is_the_standard_deviation_of_one_run():
     rng = np.random.default_rng(8)
     number = np.tile(np.arange(100), 3)
     curves = rng.normal(0, 0.05, (300, 4, 1)) + number[:, None, None]
-    found = float(rms(deviations(curves, number)))
-    assert found == pytest.approx(0.05, rel=SIGMAS / np.sqrt(2 * 200 * 4))
+    error = float(rms(deviations(curves, number)))
+    assert error == pytest.approx(0.05, rel=SIGMAS / np.sqrt(2 * 200 * 4))
 
 
 def test_noise_floor_of_unequal_lengths_counts_what_is_left():
     curves = stacked([np.array([[1.0], [2.0]]), np.array([[3.0]])])
-    found = deviations(curves, np.zeros(2, int))
+    scaled = deviations(curves, np.zeros(2, int))
     # two numbers that differ by 2 have the standard deviation sqrt(2), and one alone has none
-    assert found[:, 0, 0] == pytest.approx([-(2**0.5), 2**0.5])
-    assert np.isnan(found[:, 1]).all()
+    assert scaled[:, 0, 0] == pytest.approx([-(2**0.5), 2**0.5])
+    assert np.isnan(scaled[:, 1]).all()
 
 
 def test_groups_are_compared_among_themselves_only():
@@ -107,19 +107,21 @@ def test_groups_are_compared_among_themselves_only():
 
 def test_total_variation_of_batches_is_that_of_a_loop():
     rng = np.random.default_rng(9)
-    one, two = rng.dirichlet(np.ones(6), (2, 3)), rng.dirichlet(np.ones(6), (2, 3))
-    one[1, 2] = np.nan
-    found = distances(one, two)
+    first, second = rng.dirichlet(np.ones(6), (2, 3)), rng.dirichlet(np.ones(6), (2, 3))
+    first[1, 2] = np.nan
+    distance = distances(first, second)
     for curve, moment in np.ndindex(2, 3):
-        wanted = 0.5 * sum(abs(a - b) for a, b in zip(one[curve, moment], two[curve, moment], strict=True))
-        assert found[curve, moment, 0] == pytest.approx(wanted, nan_ok=True)
-    assert np.isnan(found[1, 2, 0])
+        wanted = 0.5 * sum(
+            abs(a - b) for a, b in zip(first[curve, moment], second[curve, moment], strict=True)
+        )
+        assert distance[curve, moment, 0] == pytest.approx(wanted, nan_ok=True)
+    assert np.isnan(distance[1, 2, 0])
 
 
 def test_mean_of_others_leaves_oneself_out():
     densities = np.array([[[1.0, 0.0]], [[0.0, 1.0]], [[0.5, 0.5]]])
-    found = mean_of_others(densities, np.zeros(3, int))
-    assert found[0, 0] == pytest.approx([0.25, 0.75])
+    means = mean_of_others(densities, np.zeros(3, int))
+    assert means[0, 0] == pytest.approx([0.25, 0.75])
     assert np.isnan(mean_of_others(densities, np.arange(3))).all()
 
 
@@ -127,9 +129,9 @@ def test_fluctuations_of_a_sine_about_a_line_are_found_and_the_line_is_not():
     times = np.arange(400) * 0.025
     line, sine = 1 - 0.05 * times, 0.04 * np.sin(2 * np.pi * times / 0.1)
     curves = np.stack([line + sine, line])[:, :, None]
-    found = fluctuation(curves, 10)
-    assert found.shape == (2, 380, 1)
+    fluctuations = fluctuation(curves, 10)
+    assert fluctuations.shape == (2, 380, 1)
     # 21 times hold five periods of four and one time more: what is left of the mean is 1/21 of the sine
-    assert rms(found[:1]) == pytest.approx(0.04 / 2**0.5, rel=2 / 21)
-    assert np.abs(found[1]).max() < ROUND_OFF
+    assert rms(fluctuations[:1]) == pytest.approx(0.04 / 2**0.5, rel=2 / 21)
+    assert np.abs(fluctuations[1]).max() < ROUND_OFF
     assert fluctuation(curves[:, :20], 10).shape[1] == 0

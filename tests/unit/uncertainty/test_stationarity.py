@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Drifts: exact where there is no noise, few alarms from steady series that swing, found where they drift."""
+"""Drifts: exact without noise, seldom in steady series that swing, and detected where there is a drift."""
 
 import numpy as np
 import pytest
@@ -20,11 +20,11 @@ def swinging(n, length, memory, seed):
 
 
 def test_a_straight_line_is_found_exactly():
-    found = drift(3.0 + np.linspace(0, 0.5, 50))
-    assert found.mean == pytest.approx(3.25)
-    assert found.change == pytest.approx(0.5)
-    assert found.low == pytest.approx(0.5) and found.high == pytest.approx(0.5)
-    assert not found.stationary
+    line = drift(3.0 + np.linspace(0, 0.5, 50))
+    assert line.mean == pytest.approx(3.25)
+    assert line.change == pytest.approx(0.5)
+    assert line.low == pytest.approx(0.5) and line.high == pytest.approx(0.5)
+    assert not line.stationary
 
 
 def test_a_constant_is_steady():
@@ -48,9 +48,9 @@ def test_errors_of_independent_times_would_raise_many():
 
 def test_a_drift_of_some_swings_is_found():
     drifting = swinging(SERIES, LENGTH, MEMORY, 2) + np.linspace(0, 3.5, LENGTH)
-    found = [drift(series) for series in drifting]
-    assert np.mean([not one.stationary and one.low > 0 for one in found]) > 0.9
-    assert np.mean([one.change for one in found]) == pytest.approx(3.5, abs=0.3)
+    drifts = [drift(series) for series in drifting]
+    assert np.mean([not line.stationary and line.low > 0 for line in drifts]) > 0.9
+    assert np.mean([line.change for line in drifts]) == pytest.approx(3.5, abs=0.3)
 
 
 def test_table_has_every_series_and_every_row_that_holds_particles():
