@@ -111,7 +111,7 @@ class _Reader:
     def _scalar(self, node: yaml.ScalarNode, path: str) -> Any:
         try:
             value = self.loader.construct_object(node)
-        except (ValueError, LookupError, AttributeError, TypeError, OverflowError):
+        except (ValueError, LookupError, AttributeError):
             # such as the 30th of February, or a tag that does not go with the text
             kind = node.tag.rpartition(":")[2]
             self._note(

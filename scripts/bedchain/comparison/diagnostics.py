@@ -93,19 +93,19 @@ def time_rows(chain: MarkovChain, start: NDArray[np.float64], least_share: float
     Returns
     -------
     list of dict
-        mixing_time; residence_time (part: mean over the particles, shortest and longest of the cells),
-        left out where no cell is ever left; first_passage_time, left out where some particles never get
-        there.
+        mixing_time; residence_time (part: mean over the particles, shortest and longest of the cells), left
+        out if no cell is ever left; first_passage_time, left out if some particles never reach the top.
     """
-    residence, held = residence_in_cells(chain, start)
+    residence, density = residence_in_cells(chain, start)
     where = {"lag_s": chain.lag_s}
-    rows = [row("mixing_time", chain.name, mixing_time(chain.matrix, chain.lag_s), "s", **where)]
-    usual = (held >= least_share) & np.isfinite(residence)
+    rows = [metric("mixing_time", chain.name, mixing_time(chain.matrix, chain.lag_s), "s", **where)]
+    usual = (density >= least_share) & np.isfinite(residence)
     if usual.any():
-        mean = float((residence[usual] * held[usual]).sum() / held[usual].sum())
-        of = {"mean": mean, "shortest": residence[usual].min(), "longest": residence[usual].max()}
+        mean = float((residence[usual] * density[usual]).sum() / density[usual].sum())
+        times = {"mean": mean, "shortest": residence[usual].min(), "longest": residence[usual].max()}
         rows += [
-            row("residence_time", chain.name, value, "s", part=part, **where) for part, value in of.items()
+            metric("residence_time", chain.name, time, "s", part=part, **where)
+            for part, time in times.items()
         ]
     passage = passage_time(chain, start, top)
     if np.isfinite(passage):

@@ -192,19 +192,15 @@ def _banded(
     values: NDArray[np.float64],
     samples: NDArray[np.float64],
     parts: Sequence[str],
-) -> list[Row]:
-    """A quantity of findings, one row a part, with the band of the replicates where there are any."""
-    found, replicates = both
-    assert found is not None
-    ends = np.full((2, len(parts)), np.nan)
-    if replicates is not None:
-        samples = of(replicates)[:, : len(parts)]
-        # an empty group has no band; a chain learned again may have no class that is never left, and then
-        # no timescale
-        there = np.isfinite(samples).any(axis=0)
-        whole = np.isfinite(samples[:, there]).all(axis=1)
-        if whole.any():
-            ends[:, there] = band(samples[whole][:, there])
+) -> list[Metric]:
+    """A row for each part, with the band of the samples, (n_replicates, n_values), if there are any."""
+    samples = samples[:, : len(parts)]
+    low, high = ends = np.full((2, len(parts)), np.nan)
+    # an empty group has no band; a replicate without a closed class has no timescales
+    there = np.isfinite(samples).any(axis=0)
+    whole = np.isfinite(samples[:, there]).all(axis=1)
+    if whole.any():
+        ends[:, there] = band(samples[whole][:, there])
     return [
         metric(quantity, source, value, unit, part=part, ci_low=start, ci_high=end)
         for part, value, start, end in zip(parts, values, low, high, strict=False)

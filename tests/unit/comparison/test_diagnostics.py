@@ -6,6 +6,7 @@ import pytest
 
 from bedchain.chains import registry
 from bedchain.comparison import diagnostics
+from bedchain.comparison.metrics import metric
 from bedchain.trajectory.frames import Frames
 from bedchain.trajectory.grid import Grid
 from made.frames import framed
@@ -14,11 +15,11 @@ GRID = Grid(0.02, 0.03, 2, 3)
 
 
 def by(rows, *keys):
-    return {tuple(row[key] for key in keys): row["value"] for row in rows}
+    return {tuple(row.get(key, "") for key in keys): row["value"] for row in rows}
 
 
 def test_a_table_has_its_columns_and_empty_places_where_nothing_was_given():
-    table = diagnostics.table([diagnostics.row("leak", "static", 0.5, part="literal")])
+    table = diagnostics.table([metric("leak", "static", 0.5, part="literal")])
     assert tuple(table.columns) == diagnostics.COLUMNS
     assert table.loc[0, ["quantity", "part", "value", "unit"]].tolist() == ["leak", "literal", 0.5, "1"]
     assert table[["lag_s", "time_s", "height_m", "ci_low", "ci_high"]].isna().all(axis=None)
