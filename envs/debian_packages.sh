@@ -3,6 +3,7 @@
 # debian_packages.sh LOG PACKAGE...: installs those of the Debian packages that are missing (as root, or by sudo).
 set -eu
 here=$(dirname "$0")
+# shellcheck source=envs/common.sh
 . "$here/common.sh"
 
 missing_packages() {

@@ -18,6 +18,7 @@ private_apt() {
 download() {
     version=$(dpkg-query -W -f '${source:Version}' libopenfoam)
     mkdir -p "$work/lists/partial" "$work/package"
+    # shellcheck source=/dev/null # a file of the system
     sh envs/source_list.sh /etc/apt "$(. /etc/os-release && echo "$VERSION_CODENAME")" "$work/sources"
     private_apt update >"$work/update.log" 2>&1 || say "reading the source lists met errors (see $work/update.log)"
     cd "$work/package"

@@ -1,6 +1,7 @@
 #!/bin/sh
 # SPDX-License-Identifier: GPL-3.0-or-later
-# Installs what is missing, and only that: Debian packages (system), .venv (Python packages), .openfoam (headers).
+# setup.sh [checks]: installs what is missing, and only that: Debian packages (system), .venv (Python packages), .openfoam
+# (headers); with `checks` also what ./test needs, into the same .venv.
 # A folder is finished when its stamp names the state of its inputs; the stamp is written last.
 set -eu
 cd "$(dirname "$0")/.."
@@ -8,6 +9,7 @@ cd "$(dirname "$0")/.."
 PYTHON=/usr/bin/python3
 VENV_MB=2100 # Python packages, downloaded and unpacked [MB]
 TEMP_MB=500  # of that in the temporary folder
+CHECKS_MB=500 # the checks' packages [MB]
 
 # lock_entry NAME: the lock's lines on that package (version and hashes).
 lock_entry() { awk -v name="$1==" 'index($0, name) == 1, !/\\$/' envs/requirements.txt; }
@@ -29,6 +31,16 @@ python_packages() {
     pip_install --no-build-isolation --use-pep517 -r envs/requirements.txt
 }
 
+check_packages() {
+    need_space . "$CHECKS_MB" "the checks' Python packages"
+    pip_install -r envs/requirements-checks.txt
+    mkdir -p .venv/checks
+}
+
+case ${1-} in
+'' | checks) ;;
+*) fail "setup.sh knows the word 'checks' only, not '$1'" ;;
+esac
 mkdir -p .setup
 exec 9>.setup/lock
 flock -n 9 || { say 'waiting for another set-up to finish' && flock 9; }
@@ -37,6 +49,8 @@ flock -n 9 || { say 'waiting for another set-up to finish' && flock 9; }
 sh envs/debian_packages.sh .setup/apt.log $(sed 's/#.*//' envs/apt.txt)
 step .venv "$(digest envs/requirements.txt) $("$PYTHON" -V) $(pwd -P)" \
     'installing Python packages into .venv (about 1 GB, a minute or two)' python_packages
+[ -z "${1-}" ] || step .venv/checks "$(digest envs/requirements-checks.txt)" \
+    "installing the checks' Python packages into .venv" check_packages
 step .openfoam "$(digest envs/openfoam_headers.sh) $(dpkg-query -W -f '${Version}' libopenfoam)" \
     "fetching OpenFOAM's headers into .openfoam (45 MB to download)" \
     sh envs/openfoam_headers.sh .setup/openfoam .openfoam

@@ -86,7 +86,10 @@ def scipy_matrix(cells: np.ndarray, grid: Grid) -> Callable[[], sparse.csr_array
 
 def deeptime_matrix(cells: np.ndarray, grid: Grid) -> Callable[[], sparse.csr_array]:
     """The same by deeptime."""
-    from deeptime.markov import TransitionCountEstimator
+    try:
+        from deeptime.markov import TransitionCountEstimator
+    except ModuleNotFoundError:
+        raise SystemExit("deeptime is not installed: `sh envs/setup.sh checks` installs it") from None
 
     def run() -> sparse.csr_array:
         paths = list(np.ascontiguousarray(np.asarray(cells).T))

@@ -16,7 +16,7 @@ from tqdm import tqdm
 from bedchain.chains import registry
 from bedchain.figures.film import Canvas, in_their_cells, voidages
 from bedchain.figures.style import close_frame, figure_style
-from bedchain.files import complete
+from bedchain.files import atomic_file
 from bedchain.measures.voidage import Slab
 from bedchain.stage import LOG, run_stage
 from bedchain.trajectory.frames import Window, lag_frames
@@ -84,7 +84,7 @@ def make_film(
     voidage = voidages(frames, lag, *size, cell_size_m, slab.thickness_m, slab.diameter_m)
     rcParams["animation.ffmpeg_path"] = imageio_ffmpeg.get_ffmpeg_exe()
     writer = FFMpegWriter(fps=FRAMES_PER_SECOND, bitrate=KILOBITS_PER_SECOND)
-    with figure_style(), complete(film) as temporary:
+    with figure_style(), atomic_file(film) as temporary:
         # a film's frames are of even numbers of pixels
         wide = 2 * round(DPI * HEIGHT_IN * (2.4 * run.grid.width_m / top + 0.35) / 2) / DPI
         figure, panels = plt.subplots(1, 3, figsize=(wide, HEIGHT_IN), sharey=True)

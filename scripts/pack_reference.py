@@ -23,7 +23,7 @@ from bedchain.dem.gas_field import read_gas_field
 from bedchain.dem.repeats import kick_seed, repeat_folder
 from bedchain.dem.segments import read_parameters
 from bedchain.errors import UserError, report_user_errors
-from bedchain.files import whole_folder, write_arrays, write_csv, write_text
+from bedchain.files import atomic_folder, write_arrays, write_csv, write_text
 from bedchain.provenance import debian_packages, git_state, machine, python_packages
 from bedchain.trajectory import archive
 from bedchain.trajectory.frames import window
@@ -67,7 +67,7 @@ def pack_reference(case_file: Path, results: Path, target: Path, level_m: float 
     history_s = min(HISTORY_S, start_s)
     frames = window(np.array(described["times_s"]), start_s - history_s, end_s)
     git = git_state()  # before files of the archive itself make the tree another one
-    with whole_folder(target) as part:
+    with atomic_folder(target) as part:
         levels = (levels_of(store[at, :2], level_m) for at in range(frames.start, frames.stop))
         write_levels(levels, part / archive.POSITIONS)
         shutil.copy(results / "bed_series.csv", part / archive.SERIES)

@@ -12,7 +12,7 @@ from bedchain.dem.series import read_series
 from bedchain.figures.style import DOUBLE_COLUMN_IN, FigureFiles, figure_style
 from bedchain.files import write_csv
 from bedchain.measures.mixing import Splits
-from bedchain.measures.voidage import Slab, profiles
+from bedchain.measures.voidage import Slab, voidage_profiles
 from bedchain.stage import LOG, run_stage
 from bedchain.trajectory.frames import Window
 from bedchain.trajectory.store import BedFiles
@@ -58,7 +58,7 @@ def plot_stationarity(
     frames = window.frames(np.array(described["times_s"]))
     rows = round(described["height_m"] / row_m)
     edges = np.linspace(0, described["height_m"], rows + 1)
-    profile = profiles(store[frames, 1], edges, described["width_m"], slab.thickness_m, slab.diameter_m)
+    profile = voidage_profiles(store[frames, 1], edges, described["width_m"], slab)
     interval_s = described["frame_interval_s"]
     first, unit = ("pressure_drop", "Pa") if "pressure_drop_Pa" in series else ("surface_angle", "rad")
     seen = {

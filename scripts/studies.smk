@@ -244,3 +244,19 @@ rule study_tradeoff:
     shell:
         "python scripts/study_tradeoff.py {input.case} {params.folder} --log {log} --at-once {threads}"
         " --variants {params.variants}"
+
+
+# Tables and pictures of the README files, from the csv files beside them: snakemake --cores 2 readme. The csv files of
+# a case or a study are made first where one is named: --config case=short, --config study=verify. What it reads is
+# no input of it: a README must not run what it shows.
+rule readme:
+    input:
+        code("write_readme"),
+    log:
+        "logs/write_readme.log",
+    conda:
+        "../envs/python.yaml"
+    params:
+        options=" ".join(f"--{key} {config[key]}" for key in ("case", "study") if key in config),
+    shell:
+        "python scripts/write_readme.py --log {log} {params.options}"

@@ -9,7 +9,7 @@ from pathlib import Path
 import numpy as np
 import pandas as pd
 
-from bedchain.files import complete, write_csv, write_npy_header, write_text
+from bedchain.files import atomic_file, write_csv, write_npy_header, write_text
 from bedchain.stage import LOG, run_stage
 from bedchain.trajectory import archive
 from bedchain.trajectory.packed_positions import read_levels, with_velocities
@@ -45,7 +45,7 @@ def unpack_reference(
     frames = [{"step": step, "time_s": step * step_s, "file": archive.POSITIONS} for step in found["steps"]]
     manifest = found["dem"] | {"frames": frames, "gas": gas.name}
     levels = read_levels(folder / archive.POSITIONS, len(frames), number)
-    with complete(trajectory) as temporary, temporary.open("wb") as stream:
+    with atomic_file(trajectory) as temporary, temporary.open("wb") as stream:
         write_npy_header(stream, (len(frames), len(STORED), number), np.dtype(np.float32))
         for frame in with_velocities(levels, found["level_m"], interval_s):
             stream.write(frame.tobytes())
@@ -55,7 +55,7 @@ def unpack_reference(
     for target, content in ((metadata, described), (dem, manifest)):
         write_text(target, json.dumps(content))
     for name, target in ((archive.SERIES, bed_series), (archive.GAS, gas)):
-        with complete(target) as temporary:
+        with atomic_file(target) as temporary:
             shutil.copyfile(folder / name, temporary)
     curves = pd.read_csv(folder / archive.REPEATS)
     for at, target in enumerate(repeats, 1):

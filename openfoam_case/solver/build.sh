@@ -18,7 +18,7 @@ mkdir -p "$(dirname "$output")"
 objects=$(mktemp -d)
 trap 'rm -rf "$objects"' EXIT
 
-options="-std=c++14 -O3 -march=native -Wall -DWM_DP -DWM_LABEL_SIZE=32 -DOPENFOAM=1912 -DNoRepository -Dlinux64
+options="-std=c++14 -O3 -march=native -Wall -DWM_DP -DWM_LABEL_SIZE=32 -DOPENFOAM=1912 -DNoRepository -Dlinux64 \
     -DWM_ARCH_OPTION=64 -ftemplate-depth-100 -fPIC -I$sources"
 for library in OpenFOAM finiteVolume meshTools OSspecific; do
     options="$options -isystem $headers/$library"
@@ -26,7 +26,8 @@ done
 options="$options -isystem /usr/include/liggghts -isystem /usr/lib/$arch/openmpi/include"
 
 # Each file on its own, two at a time
-ls "$sources"/*.C | xargs -P 2 -I{} sh -c "g++ $(echo $options) -c {} -o $objects/\$(basename {} .C).o"
+find "$sources" -name '*.C' -print0 |
+    xargs -0 -P 2 -I{} sh -c "g++ $options -c {} -o $objects/\$(basename {} .C).o"
 g++ -o "$output.part" "$objects"/*.o -L/usr/lib/openmpi-system -L"/usr/lib/$arch/openmpi/lib" \
     -lfiniteVolume -lmeshTools -lOpenFOAM -lPstream -lliggghts -lmpi -lmpi_cxx -ldl -lm
 mv "$output.part" "$output"

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Errors that a user can put right, told in one clear message without a traceback."""
+"""Errors that a user can put right, reported as one message without a traceback."""
 
 import sys
 from collections.abc import Iterator
@@ -9,21 +9,25 @@ from pathlib import Path
 
 
 class UserError(Exception):
-    """Something the user can put right; the message names the datum and the way out."""
+    """An error that the user can put right; the message names the datum and the remedy."""
+
+
+class DataError(UserError, ValueError):
+    """Data that cannot be used; the message names them, the place, and the remedy."""
 
 
 @dataclass(frozen=True)
 class Problem:
-    """One thing wrong with a case file.
+    """A problem of a case file.
 
     Attributes
     ----------
     key : str
         Dotted path of the key, such as ``bed.width_m``.
     wrong : str
-        What is wrong, with the value.
+        The fault, with the value.
     remedy : str
-        What to write instead.
+        The correction.
     line : int or None
         Line in the file, from 1; None where the key is not in the file (missing, or a default).
     """
@@ -39,7 +43,7 @@ class Problem:
 
 
 class CaseError(UserError):
-    """A case file that cannot be run: every problem found in it, at once.
+    """A case file that cannot be run; its message lists every problem.
 
     Parameters
     ----------
@@ -79,7 +83,3 @@ def report_user_errors(log: Path | str | None = None) -> Iterator[None]:
             with Path(log).open("a", encoding="utf-8") as stream:
                 stream.write(message + "\n")
         raise SystemExit(1) from None
-
-
-class DataError(UserError, ValueError):
-    """Data that cannot be used as they are; the message says which, where, and the way out."""

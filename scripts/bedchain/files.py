@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Files and folders that appear complete or not at all, and the lock of a folder."""
+"""Files and folders that appear complete or not at all, arrays in them, and a lock on a folder."""
 
 import fcntl
 import os
@@ -24,11 +24,11 @@ def write_arrays(path: Path | str, arrays: dict[str, NDArray[Any]]) -> None:
     Parameters
     ----------
     path : path
-        File to make.
+        File to write.
     arrays : dict of str to array
-        Anything but objects.
+        Of any type except objects.
     """
-    with complete(Path(path)) as temporary, temporary.open("wb") as stream:
+    with atomic_file(Path(path)) as temporary, temporary.open("wb") as stream:
         np.savez(stream, allow_pickle=False, **arrays)
 
 
@@ -38,7 +38,7 @@ def read_arrays(path: Path | str) -> dict[str, NDArray[Any]]:
     Raises
     ------
     DataError
-        The file is missing, cut off, or no .npz.
+        The file is missing, cut off, or not an .npz.
     """
     try:
         with np.load(path, allow_pickle=False) as archive:
@@ -48,7 +48,7 @@ def read_arrays(path: Path | str) -> dict[str, NDArray[Any]]:
 
 
 def map_array(path: Path | str, name: str) -> np.memmap:
-    """Memory map of one array inside an uncompressed .npz, so that it need not fit in memory.
+    """Memory map of an array in an uncompressed .npz: it need not fit in memory.
 
     Raises
     ------
@@ -63,7 +63,7 @@ def map_array(path: Path | str, name: str) -> np.memmap:
     if entry.compress_type != zipfile.ZIP_STORED:
         raise DataError(f"{path}: {name} is compressed and cannot be mapped: write it with numpy.savez")
     with open(path, "rb") as stream:
-        # A local header of 30 bytes, whose last four give the lengths of the name and of the extra field.
+        # the local header has 30 bytes; the last four are the lengths of the name and of the extra field
         stream.seek(entry.header_offset + 26)
         lengths = np.frombuffer(stream.read(4), "<u2")
         stream.seek(entry.header_offset + 30 + int(lengths.sum()))
@@ -78,18 +78,18 @@ CSV_DIGITS = "%.8g"
 
 
 @contextmanager
-def complete(target: Path) -> Iterator[Path]:
-    """A temporary name beside ``target`` to write to; moved to ``target`` if all went well, removed if not.
+def atomic_file(target: Path) -> Iterator[Path]:
+    """A temporary file beside ``target``: moved to ``target`` after success, removed after an error.
 
     Parameters
     ----------
     target : Path
-        Its folder is made where missing.
+        Its folder is created where missing.
 
     Yields
     ------
     Path
-        With the suffix of ``target``, so that writers that look at it do the right thing.
+        Has the suffix of ``target``, from which some writers take the format.
     """
     target.parent.mkdir(parents=True, exist_ok=True)
     temporary = target.with_name(f".{target.stem}.{os.getpid()}{target.suffix}")
@@ -109,22 +109,22 @@ def sync(file: Path) -> None:
 
 def write_text(target: Path, text: str) -> None:
     """Write a text in UTF-8, complete or not at all."""
-    with complete(target) as temporary:
+    with atomic_file(target) as temporary:
         temporary.write_text(text, encoding="utf-8")
 
 
 def write_npy_header(stream: IO[bytes], shape: tuple[int, ...], dtype: np.dtype) -> None:
-    """Begin an .npy file whose values follow as bytes, in C order, a part at a time.
+    """Write the header of an .npy file; its values follow as bytes, in C order, in parts.
 
     Parameters
     ----------
     stream : binary file
     shape : tuple of int
-        Of the whole array.
+        Shape of the whole array.
     dtype : dtype
     """
-    described = {"descr": np.lib.format.dtype_to_descr(dtype), "fortran_order": False, "shape": shape}
-    np.lib.format.write_array_header_1_0(stream, described)
+    header = {"descr": np.lib.format.dtype_to_descr(dtype), "fortran_order": False, "shape": shape}
+    np.lib.format.write_array_header_1_0(stream, header)
 
 
 def write_csv(table: pd.DataFrame, target: Path) -> None:
@@ -133,21 +133,21 @@ def write_csv(table: pd.DataFrame, target: Path) -> None:
     Parameters
     ----------
     table : DataFrame
-        Units stand in the names of the columns.
+        Its column names end in the units.
     target : Path
     """
-    with complete(target) as temporary:
+    with atomic_file(target) as temporary:
         table.to_csv(temporary, index=False, float_format=CSV_DIGITS)
 
 
 @contextmanager
-def exclusive(folder: Path) -> Iterator[None]:
-    """Hold `folder` for one run at a time; the lock goes with the process, however it ends.
+def locked_folder(folder: Path) -> Iterator[None]:
+    """Lock a folder for one process; the lock ends with the process, however that ends.
 
     Raises
     ------
     UserError
-        Where another process holds it.
+        Another process holds the lock.
     """
     folder.mkdir(parents=True, exist_ok=True)
     with (folder / "lock").open("a+", encoding="utf-8") as lock:
@@ -166,8 +166,8 @@ def exclusive(folder: Path) -> Iterator[None]:
 
 
 @contextmanager
-def whole_folder(target: Path) -> Iterator[Path]:
-    """A folder to work in that becomes `target` only if the work succeeds; a torn one is cleared first."""
+def atomic_folder(target: Path) -> Iterator[Path]:
+    """A work folder that becomes ``target`` if the work succeeds; the remains of a failed try are removed."""
     part = target.with_name(target.name + ".part")
     shutil.rmtree(part, ignore_errors=True)
     part.mkdir(parents=True)

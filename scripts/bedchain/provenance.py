@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Where results come from: versions, commit, case, machine and times."""
+"""Provenance of results: versions, commit, case, machine and times."""
 
 import csv
 import hashlib
@@ -19,8 +19,8 @@ MB = 1_000_000
 
 def python_packages() -> dict[str, str]:
     """Name -> version of every installed Python package."""
-    found = {item.metadata["Name"]: item.version for item in distributions()}
-    return dict(sorted(found.items(), key=lambda pair: pair[0].lower()))
+    versions = {item.metadata["Name"]: item.version for item in distributions()}
+    return dict(sorted(versions.items(), key=lambda pair: pair[0].lower()))
 
 
 def debian_packages(names: tuple[str, ...] = DEBIAN_PACKAGES) -> dict[str, str]:
@@ -29,18 +29,18 @@ def debian_packages(names: tuple[str, ...] = DEBIAN_PACKAGES) -> dict[str, str]:
         return {}
     form = "${Package} ${Version} ${db:Status-Status}\n"
     lines = _output("dpkg-query", "--show", f"--showformat={form}", *names).splitlines()
-    found = {words[0]: words[1] for words in map(str.split, lines) if words[-1] == "installed"}
-    return {name: found.get(name, "not installed") for name in names}
+    versions = {words[0]: words[1] for words in map(str.split, lines) if words[-1] == "installed"}
+    return {name: versions.get(name, "not installed") for name in names}
 
 
 def git_state() -> dict[str, Any]:
-    """Commit, and whether files differ from it; commit None where there is none."""
+    """Commit (None outside a repository), and whether files differ from it."""
     commit = _output("git", "rev-parse", "--verify", "HEAD").strip() or None
     return {"commit": commit, "dirty": bool(_output("git", "status", "--porcelain")) if commit else None}
 
 
 def machine() -> dict[str, Any]:
-    """Processor, cores, memory and system; nothing that names the machine or its user."""
+    """Processor, cores, memory and system, without the name of the machine or its user."""
     memory = os.sysconf("SC_PAGE_SIZE") * os.sysconf("SC_PHYS_PAGES")
     release = platform.freedesktop_os_release().get("PRETTY_NAME", "unknown")
     return {
@@ -54,12 +54,12 @@ def machine() -> dict[str, Any]:
 
 
 def case_hash(case: Mapping[str, Any]) -> str:
-    """SHA-256 of a complete case, defaults included, independent of its comments and order."""
+    """SHA-256 of a case with its defaults, independent of comments and order."""
     return hashlib.sha256(json.dumps(case, sort_keys=True).encode()).hexdigest()
 
 
 def rule_times(folder: Path) -> dict[str, dict[str, float]]:
-    """Wall time [s] and peak memory [MB] of each job that left a benchmark.
+    """Wall time [s] and peak memory [MB] of each job that has a benchmark file.
 
     Parameters
     ----------

@@ -10,7 +10,7 @@ import pandas as pd
 import pytest
 
 from bedchain.errors import DataError, UserError
-from bedchain.files import complete, write_csv
+from bedchain.files import atomic_file, write_csv
 from bedchain.stage import LOG, run_stage, stage, stage_arguments
 
 
@@ -71,7 +71,7 @@ def test_reports_go_to_the_log_of_their_stage_only(tmp_path):
 
 def test_file_appears_only_when_it_is_complete(tmp_path):
     target = tmp_path / "made" / "table.csv"
-    with complete(target) as temporary:
+    with atomic_file(target) as temporary:
         temporary.write_text("x")
         assert temporary.suffix == ".csv"
         assert not target.exists()
@@ -81,7 +81,7 @@ def test_file_appears_only_when_it_is_complete(tmp_path):
 def test_failure_leaves_what_was_there_before(tmp_path):
     target = tmp_path / "table.csv"
     target.write_text("before")
-    with pytest.raises(RuntimeError), complete(target) as temporary:
+    with pytest.raises(RuntimeError), atomic_file(target) as temporary:
         temporary.write_text("half")
         raise RuntimeError
     assert target.read_text() == "before"

@@ -13,7 +13,7 @@ LIBRARY = {
     "files.py": "import bedchain.errors\n",
     "physics/__init__.py": "",
     "physics/contacts.py": "import numpy as np\n",
-    "case/__init__.py": '"""A package with code."""\n\nfrom bedchain.files import complete\n',
+    "case/__init__.py": '"""A package with code."""\n\nfrom bedchain.files import atomic_file\n',
     "case/load.py": "def load():\n    from bedchain.physics import contacts\n",
     "dem/__init__.py": "from bedchain.errors import UserError\n",
     "dem/drum.py": "from bedchain.dem import disk\n",
@@ -52,7 +52,7 @@ def behind(tmp_path, monkeypatch):
         ("import bedchain.physics.contacts\n", {"physics/contacts.py"}),
         ("from bedchain.physics.contacts import stiffness\n", {"physics/contacts.py"}),
         ("def draw():\n    if draw:\n        import bedchain.errors\n", {"errors.py"}),
-        ("from bedchain.files import complete\n", {"files.py", "errors.py"}),
+        ("from bedchain.files import atomic_file\n", {"files.py", "errors.py"}),
     ],
     ids=lambda value: value if isinstance(value, str) else "",
 )

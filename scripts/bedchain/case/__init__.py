@@ -1,2 +1,2 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""The case file: read, completed, checked, varied, and turned into the numbers of both solvers."""
+"""The case: schema, reading, checks, variants, presets, and the parameters of both solvers."""

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""The case file: read, completed by the schema's defaults, and refused with every reason at once."""
+"""Reading of a case file: defaults of the schema, checks, and one error with every problem."""
 
 import difflib
 import logging
@@ -22,7 +22,7 @@ NEW_NAMES = {"fidelity": "preset"}  # keys of a case and words of --config that 
 
 
 def load_case(file: Path | str, schema_file: Path = SCHEMA_FILE) -> Case:
-    """Read a case file, add the defaults, and check it.
+    """A case from its file, with defaults and checked.
 
     Parameters
     ----------
@@ -39,9 +39,9 @@ def load_case(file: Path | str, schema_file: Path = SCHEMA_FILE) -> Case:
     Raises
     ------
     CaseError
-        With every problem found: unknown or missing keys, values of the wrong kind, impossible physics.
+        The case has problems, all listed: unknown or missing keys, wrong values, impossible physics.
     UserError
-        Where the file cannot be read.
+        The file cannot be read.
     """
     file = Path(file)
     schema = load_schema(schema_file)

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""The one path of numbers from a case to both solvers: a LIGGGHTS include and an OpenFOAM dictionary."""
+"""Parameters of both solvers from a case, as a LIGGGHTS include and an OpenFOAM dictionary."""
 
 import math
 from dataclasses import dataclass
@@ -17,27 +17,26 @@ from bedchain.physics.packing import (
 )
 from bedchain.physics.whole_numbers import ratio
 
-SKIN_DIAMETERS = (
-    0.7  # neighbour skin: a list lasts until a particle has moved half of it; speed only, no physics
-)
-START_SPEED_M_S = 0.05  # random, breaks the lattice; forgotten after the fall
+# neighbour skin: a list is valid until a particle has moved by half of it; changes the speed, not the physics
+SKIN_DIAMETERS = 0.7
+START_SPEED_M_S = 0.05  # random, breaks the lattice; without effect after the fall
 DUMP_SUFFIX = {"binary": "bin", "text": "txt"}
 
 
 @dataclass(frozen=True)
 class Parameter:
-    """One number or word that a solver needs.
+    """A number or word that a solver needs.
 
     Attributes
     ----------
     name : str
-        Its name in decks and dictionaries.
+        Name in decks and dictionaries.
     value : int, float or str
-        In the unit.
+        Value in the unit.
     unit : str
         Unit.
     source : str
-        Where it is from: a key of the case, or the rule that derives it.
+        Origin: a key of the case, or the formula.
     """
 
     name: str
@@ -47,7 +46,7 @@ class Parameter:
 
 
 def solver_parameters(case: Case, schema: Schema) -> list[Parameter]:
-    """Everything the solvers need to know of a case, and nothing else.
+    """All parameters that the solvers need of a case.
 
     Parameters
     ----------
@@ -109,7 +108,7 @@ def rolling_law(case: Case) -> str:
 
 
 def drum_parameters(case: Case) -> list[Parameter]:
-    """How fast a drum turns; nothing for a bed in a box."""
+    """Angular velocity of a drum; empty for a bed in a box."""
     if "drum" not in case:
         return []
     speed = 2 * math.pi / case["drum"]["revolution_s"]
@@ -145,7 +144,7 @@ def openfoam_text(parameters: list[Parameter]) -> str:
 
 
 def fluidization_line(case: Case) -> str:
-    """One line for people: the case's minimum fluidization velocity, and that of other thicknesses."""
+    """Minimum fluidization velocity of a case and of other slab thicknesses, as a line of the log."""
     bed, particles, gas = case["bed"], case["particles"], case["gas"]
     diameter = particles["diameter_m"]
     spheres = (diameter, particles["density_kg_m3"], gas["density_kg_m3"], gas["viscosity_Pa_s"])

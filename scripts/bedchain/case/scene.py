@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""The scene of a case: the numbers that decide what physics it needs."""
+"""The scene of a case: the numbers that decide which physics it needs."""
 
 from bedchain.case.schema import Case
 from bedchain.errors import UserError
@@ -8,17 +8,17 @@ from bedchain.physics.scene_numbers import Scene
 
 
 def scene_of(case: Case) -> Scene:
-    """What the audit needs of a checked case.
+    """Scene of a checked case.
 
     Parameters
     ----------
     case : dict
-        Sections bed, particles, contact and gas, and drum where it has one.
+        Sections bed, particles, contact, gas, and optionally drum.
 
     Raises
     ------
     UserError
-        Where the particles are no heavier than the gas: nothing settles then, and no number has a meaning.
+        The particles are not denser than the gas: nothing would settle.
     """
     bed, particles, gas, contact = case["bed"], case["particles"], case["gas"], case["contact"]
     if particles["density_kg_m3"] <= gas["density_kg_m3"]:
@@ -31,10 +31,21 @@ def scene_of(case: Case) -> Scene:
     depth = settled_height(particles["number"], diameter, width, thickness if layered else None)
     voidage = 1 - (PACKED_VOLUME_SHARE if layered else PACKED_AREA_SHARE * 2 / 3 * diameter / thickness)
     return Scene(
-        diameter, particles["density_kg_m3"], gas["density_kg_m3"], gas["viscosity_Pa_s"],
-        gas["superficial_velocity_m_s"] if solved else 0.0,
-        width, thickness, depth, bed["height_m"] if "drum" in case else depth, voidage,
-        contact["young_modulus_Pa"], contact["poisson_ratio_1"], contact["friction_1"],
-        contact["rolling_friction_1"],
-        gas["cell_size_m"], solved, layered,
-    )  # fmt: skip
+        diameter=diameter,
+        density=particles["density_kg_m3"],
+        gas_density=gas["density_kg_m3"],
+        viscosity=gas["viscosity_Pa_s"],
+        velocity=gas["superficial_velocity_m_s"] if solved else 0.0,
+        width=width,
+        thickness=thickness,
+        depth=depth,
+        fall=bed["height_m"] if "drum" in case else depth,
+        voidage=voidage,
+        young=contact["young_modulus_Pa"],
+        poisson=contact["poisson_ratio_1"],
+        friction=contact["friction_1"],
+        rolling=contact["rolling_friction_1"],
+        cell=gas["cell_size_m"],
+        gas=solved,
+        layered=layered,
+    )

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""The schema of a case: its keys, their defaults, and how a value is looked up."""
+"""The schema of a case, and the lookup of its keys and of a case's values."""
 
 from functools import cache
 from pathlib import Path
@@ -10,11 +10,7 @@ from jsonschema import Draft202012Validator
 from bedchain.case.strict_yaml import read_yaml
 
 SCHEMA_FILE = Path(__file__).resolve().parents[3] / "cases" / "case.schema.yaml"
-
-
 Case = dict[str, Any]
-
-
 Schema = dict[str, Any]
 
 
@@ -37,7 +33,7 @@ def case_value(case: Case, key: str) -> Any:
 
 
 def schema_keys(schema: Schema, section: str = "") -> dict[str, Schema]:
-    """Dotted key -> its part of the schema, for all keys that hold a value, in the order of the schema."""
+    """Dotted key -> its part of the schema, for all keys that hold a value, in the schema's order."""
     keys: dict[str, Schema] = {}
     for name, part in schema["properties"].items():
         path = f"{section}.{name}" if section else name

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""YAML files read strictly: numbers as YAML 1.2 has them, no key twice, the line of every key known."""
+"""Strict reading of YAML: numbers as in YAML 1.2, unique keys, and the line of every key."""
 
 import math
 import re
@@ -23,7 +23,7 @@ StrictLoader.add_implicit_resolver("tag:yaml.org,2002:float", FLOAT, list("-+.01
 
 
 def read_yaml(file: Path) -> tuple[Any, Lines]:
-    """Read a YAML file and the line of each of its keys.
+    """Contents of a YAML file, and the line of each key.
 
     Parameters
     ----------
@@ -40,7 +40,7 @@ def read_yaml(file: Path) -> tuple[Any, Lines]:
     Raises
     ------
     UserError
-        Where the file is missing.
+        The file is missing or not text.
     CaseError
         Where it is no YAML, or holds a key twice, an alias of a group, a number that is not finite, or a
         text that its kind of value cannot be.
@@ -76,7 +76,7 @@ def _no_yaml(error: Exception, text: str, loader: StrictLoader | None) -> Proble
 
 
 class _Reader:
-    """Turns YAML nodes into values, and notes lines and problems on the way."""
+    """Values of YAML nodes, with the lines of their keys and the problems met."""
 
     def __init__(self, loader: StrictLoader) -> None:
         self.loader = loader

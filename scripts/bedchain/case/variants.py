@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Variants of a case: the same bed with some keys changed, each simulated in a folder of its own."""
+"""Variants of a case: the same bed with some keys changed, each in a separate folder."""
 
 from collections.abc import Mapping
 from dataclasses import dataclass, field
@@ -21,7 +21,7 @@ class Variant:
     Attributes
     ----------
     name : str
-        Of its folder.
+        Name of its folder.
     changes : mapping of str to object
         New values by dotted key, such as ``{"gas.drag_law": "beetstra"}``.
     """
@@ -36,10 +36,10 @@ def write_variant(case_file: Path, variant: Variant, folder: Path) -> Case:
     Parameters
     ----------
     case_file : Path
-        The case that it varies.
+        The case to vary.
     variant : Variant
     folder : Path
-        Gets ``case.yaml``; made where missing.
+        Gets ``case.yaml``; created where missing.
 
     Returns
     -------
@@ -49,7 +49,7 @@ def write_variant(case_file: Path, variant: Variant, folder: Path) -> Case:
     Raises
     ------
     CaseError
-        The variant cannot be run: with every reason.
+        The variant has problems, all listed.
     """
     content = dict(read_yaml(case_file)[0])
     for key, value in variant.changes.items():

@@ -1,2 +1,2 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""The simulation: processes, segments with their restarts, repeats, the gas case, and what a run leaves."""
+"""The simulation: solver processes, segments with restarts, repeats, the gas case, and results of a run."""

@@ -1,9 +1,11 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Disk space that a simulation takes, asked for before it starts."""
+"""Disk space that a simulation needs, and its check before the start."""
 
 import math
 import shutil
 from pathlib import Path
+
+from tqdm import tqdm
 
 from bedchain.case.schema import Case
 from bedchain.errors import UserError
@@ -11,15 +13,15 @@ from bedchain.physics.whole_numbers import ratio
 
 DUMP_COLUMNS = {"one": 5, "many": 7}  # id x z vx vz, and y vy, by bed.layers
 DOUBLE_BYTES = 8
-TRAJECTORY_BYTES = 4 * 4  # x z vx vz in single precision, the store made of the frames
+TRAJECTORY_BYTES = 4 * 4  # x z vx vz in single precision: trajectory.npy
 CELL_BYTES = 4  # an int32 for each particle and frame
-RESTART_BYTES_PARTICLE = 500  # measured 480: a LIGGGHTS restart, with the history of a particle's contacts
+RESTART_BYTES_PARTICLE = 500  # measured 480: LIGGGHTS restart with the history of the contacts
 RESTART_BYTES_GAS_CELL = 500  # measured 490: mesh and fields of a segment
 MARGIN = 1.1  # file system blocks, logs, figures
 
 
 def run_bytes(case: Case) -> int:
-    """Bytes that a case takes on disk: frames, the stores made of them, and a restart of each segment.
+    """Bytes that a case needs on disk: frames, trajectory, cells, and a restart of each segment.
 
     Parameters
     ----------
@@ -39,26 +41,27 @@ def run_bytes(case: Case) -> int:
 
 
 def require_disk(folder: Path, needed: int, done: int = 0) -> None:
-    """Refuse to start where the disk is too full.
+    """Refuse a run that does not fit on the disk.
 
     Parameters
     ----------
     folder : Path
-        Where the results go; an existing folder.
+        Folder of the results; exists.
     needed : int
-        Bytes that the run takes in all.
+        Bytes of the complete run.
     done : int, optional
-        Bytes of it that are there already.
+        Bytes of it that are already there.
 
     Raises
     ------
     UserError
-        Names the folder, the space needed and free, and the remedy.
+        The disk has too little free space.
     """
     free = shutil.disk_usage(folder).free
     if needed - done > free:
+        needed_size, free_size = (tqdm.format_sizeof(size, "B") for size in (needed - done, free))
         raise UserError(
-            f"{folder}: the run needs {(needed - done) / 1e6:.0f} MB on disk, {free / 1e6:.0f} MB are free; "
+            f"{folder}: the run needs {needed_size} on disk, {free_size} are free; "
             "free some space, let results/ point to a larger disk, "
             "or in the case take a shorter time.end_s or a longer time.frame_interval_s"
         )

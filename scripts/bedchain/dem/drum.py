@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Segments of a drum: LIGGGHTS without OpenFOAM or bedFoam, frames and records as of a bed with gas."""
+"""Segments of a drum, simulated by LIGGGHTS alone; frames and records as of a bed with gas."""
 
 import time
 from pathlib import Path
@@ -18,7 +18,7 @@ from bedchain.dem.segments import (
     write_record,
 )
 from bedchain.errors import UserError
-from bedchain.files import whole_folder
+from bedchain.files import atomic_folder
 from bedchain.trajectory.dumps import read_dump
 
 FILL, TUMBLE, WALLS = "drum/in.fill", "drum/in.tumble", "drum/walls.in"
@@ -26,13 +26,13 @@ SERIES = "bed_series.csv"
 SERIES_COLUMNS = ["time_s", "mean_height_m", "surface_angle_rad", "kinetic_energy_J", "particles_1"]
 
 
-def turns(case: Path) -> bool:
+def is_drum(case: Path) -> bool:
     """Whether ``results/<case>`` is a drum, by its ``parameters.lig``."""
     return "drum_speed" in read_parameters(case / "parameters.lig")
 
 
 def input_files(case: Path, decks: Path) -> list[Path]:
-    """Every file that a drum's run depends on, in a fixed order: numbers and decks, no solver of ours."""
+    """Files that the run of a drum depends on, in a fixed order: parameters and decks."""
     blocks = [decks / "include" / name for name in ("style.in", "bed.in")]
     return [case / "parameters.lig", *(decks / name for name in (FILL, TUMBLE, WALLS)), *blocks]
 
@@ -40,7 +40,7 @@ def input_files(case: Path, decks: Path) -> list[Path]:
 def run_segment(
     run: SegmentedRun, index: int, steps: tuple[int, int], previous: Path, decks: Path
 ) -> Segment:
-    """Turn the drum over one segment.
+    """Simulate one segment of a drum.
 
     Parameters
     ----------
@@ -50,29 +50,29 @@ def run_segment(
     steps : (int, int)
         First and last step of the particles.
     previous : Path
-        Folder with the restart to go on from.
+        Folder with the restart to continue.
     decks : Path
         ``liggghts_inputs``.
 
     Returns
     -------
     Segment
-        Its record, already in its folder, with ``bed_series.csv``.
+        Record of the segment; its folder is complete, with ``bed_series.csv``.
 
     Raises
     ------
     UserError
-        LIGGGHTS is not there or stops: its own words, and the last good state.
+        LIGGGHTS is missing or stops: its last lines, and the last good state.
     """
     parameters = read_parameters(run.case / "parameters.lig")
     name, began = f"segment_{index:04d}", time.monotonic()
-    given = {
+    variables = {
         "decks": decks, "parameters": run.case / "parameters.lig", "restart": previous / RESTART,
         "start_step": steps[0], "steps": steps[1] - steps[0],
     }  # fmt: skip
-    with whole_folder(run.state / name) as part:
+    with atomic_folder(run.state / name) as part:
         try:
-            run_deck(decks / TUMBLE, given | {"output": part}, part / "liggghts.log", run.ranks)
+            run_deck(decks / TUMBLE, variables | {"output": part}, part / "liggghts.log", run.ranks)
         except UserError as error:
             raise UserError(f"{error}\nlast good state: {previous / RESTART}") from None
         keep_own_frames(part, run, steps, int(parameters["frame_steps"]), str(parameters["dump_suffix"]))
@@ -91,20 +91,20 @@ def run_segment(
 
 
 def drum_series(folder: Path, parameters: dict[str, float | str]) -> pd.DataFrame:
-    """The bed as a whole in each frame of a segment.
+    """Integral quantities of the bed in each frame of a segment.
 
     Parameters
     ----------
     folder : Path
-        With the frames that the segment owns.
+        Holds the frames of the segment.
     parameters : dict
-        Of `bedchain.segments.read_parameters`.
+        Of `bedchain.dem.segments.read_parameters`.
 
     Returns
     -------
     DataFrame
         time_s, mean_height_m, surface_angle_rad, kinetic_energy_J (of translation), particles_1, in order of
-        time. The angle is that of the centroid's radius to the vertical: the surface's, where that is plane.
+        time. The angle is between the vertical and the radius to the centroid: that of a plane surface.
     """
     columns, rows = frame_columns(parameters), []
     radius, mass = float(parameters["width"]) / 2, particle_mass(parameters)

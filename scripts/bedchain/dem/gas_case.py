@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""The OpenFOAM case of a segment: a new mesh, or the mesh and the last fields of what it goes on from."""
+"""The OpenFOAM case of a segment: new, or with the mesh and last fields of the segment before."""
 
 import re
 import shutil
@@ -12,16 +12,16 @@ GAS_PARTS = ("0.orig", "constant", "system")
 
 
 def prepare_gas(gas: Path, parameters: Path, previous: Path, settings: dict[str, object]) -> None:
-    """Make the OpenFOAM case of a segment.
+    """Write the OpenFOAM case of a segment.
 
     Parameters
     ----------
     gas : Path
-        Folder to make.
+        Folder to write.
     parameters : Path
         ``caseParameters``.
     previous : Path
-        What the segment goes on from: its folder ``gas`` gives mesh and fields; without one all is new.
+        State that the segment continues: mesh and fields of its folder ``gas``; new ones where it has none.
     settings : dict
         Entries of ``segmentParameters``.
     """
@@ -44,14 +44,14 @@ def prepare_gas(gas: Path, parameters: Path, previous: Path, settings: dict[str,
 
 
 def copy_last_state(source: Path, target: Path) -> None:
-    """Copy mesh, settings and the last fields of an OpenFOAM case, whole or cut for several ranks.
+    """Copy mesh, settings and the last fields of an OpenFOAM case, for one rank or decomposed.
 
     Parameters
     ----------
     source : Path
         The case.
     target : Path
-        Folder to make.
+        Folder to write.
     """
     for name in ["constant", "system"]:
         shutil.copytree(source / name, target / name)
@@ -63,13 +63,13 @@ def copy_last_state(source: Path, target: Path) -> None:
             shutil.copytree(part / "constant", target / part.name / "constant")
 
 
-def cut_for_ranks(gas: Path, source: Path, ranks: int) -> None:
-    """Put the last fields of a case together, or cut them, so that as many ranks can go on from them.
+def redistribute(gas: Path, source: Path, ranks: int) -> None:
+    """Reconstruct or decompose the last fields of a case, so that another number of ranks can continue it.
 
     Parameters
     ----------
     gas : Path
-        Of `copy_last_state`; changed in place.
+        Case of `copy_last_state`; changed in place.
     source : Path
         The case that it was copied from.
     ranks : int
@@ -91,6 +91,6 @@ def cut_for_ranks(gas: Path, source: Path, ranks: int) -> None:
 
 
 def last_time(folder: Path) -> Path | None:
-    """The latest time folder of an OpenFOAM case or of a rank's part of it."""
+    """The latest time folder of an OpenFOAM case or of a rank's part, None without any."""
     times = [item for item in folder.iterdir() if item.is_dir() and re.fullmatch(r"[0-9.]+", item.name)]
     return max(times, key=lambda item: float(item.name), default=None)

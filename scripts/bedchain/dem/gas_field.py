@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""A gas field, read from the OpenFOAM case that a segment leaves, whole or cut for several ranks."""
+"""Fields of the gas, from the OpenFOAM case of a segment or from an archive."""
 
 import tempfile
 from pathlib import Path
@@ -18,13 +18,13 @@ class GasField(NamedTuple):
     Attributes
     ----------
     time_s : float
-        [s].
+        Time of the field [s].
     x_m, z_m : (n_gas_cells,) ndarray
         Centres of the gas cells [m].
     values : (n_gas_cells,) ndarray
-        Of the field, in its own unit.
+        Values of the field, in its unit.
     mesh : pyvista.DataSet
-        The cells themselves, with the field.
+        The cells, with the field.
     """
 
     time_s: float
@@ -35,16 +35,16 @@ class GasField(NamedTuple):
 
 
 def gas_near(manifest: dict[str, Any], folder: Path, name: str, time_s: float) -> GasField:
-    """A field of the gas at the moment nearest to a time that it was kept at.
+    """A field of the gas at the stored time nearest to a given one.
 
     Parameters
     ----------
     manifest : dict
-        Of the DEM run; one that was unpacked from an archive names the file of its gas.
+        Of the DEM run; that of an unpacked archive names the file of the gas.
     folder : Path
-        Of the manifest.
+        Folder of the manifest.
     name : str
-        ``voidage``.
+        Field, such as ``voidage``.
     time_s : float
         Wanted time [s].
 
@@ -59,7 +59,7 @@ def gas_near(manifest: dict[str, Any], folder: Path, name: str, time_s: float) -
 
 
 def archived_gas(file: Path, name: str, time_s: float) -> GasField:
-    """A field out of the archived moments of the gas.
+    """A field from the archived times of the gas.
 
     Parameters
     ----------
@@ -75,18 +75,18 @@ def archived_gas(file: Path, name: str, time_s: float) -> GasField:
     GasField
     """
     arrays = read_arrays(file)
-    moment = int(np.argmin(np.abs(arrays["times_s"] - time_s)))
+    index = int(np.argmin(np.abs(arrays["times_s"] - time_s)))
     x, z = np.unique(arrays["x_m"]), np.unique(arrays["z_m"])
     # centres lie half a cell inside the walls
     spacing = ((x[0] + x[-1]) / len(x), 1.0, (z[0] + z[-1]) / len(z))
     mesh = pyvista.ImageData(dimensions=(len(x) + 1, 2, len(z) + 1), spacing=spacing, origin=(0.0, -0.5, 0.0))
-    values = np.asarray(arrays[name][moment], float)
+    values = np.asarray(arrays[name][index], float)
     mesh.cell_data[name] = values
-    return GasField(float(arrays["times_s"][moment]), arrays["x_m"], arrays["z_m"], values, mesh)
+    return GasField(float(arrays["times_s"][index]), arrays["x_m"], arrays["z_m"], values, mesh)
 
 
 def nearest_gas(manifest: dict[str, Any], folder: Path, name: str, time_s: float) -> tuple[Path, float]:
-    """The segment whose gas is still there and ends nearest to a time.
+    """OpenFOAM case of the segment that still has its gas and ends nearest to a time.
 
     Parameters
     ----------
@@ -94,7 +94,7 @@ def nearest_gas(manifest: dict[str, Any], folder: Path, name: str, time_s: float
         Of the DEM run; its segments' folders are relative to ``folder``.
     folder : Path
     name : str
-        Field that is wanted.
+        Field, such as ``voidage``.
     time_s : float
         Wanted time [s].
 
@@ -110,14 +110,14 @@ def nearest_gas(manifest: dict[str, Any], folder: Path, name: str, time_s: float
     UserError
         No segment has the field.
     """
-    found = [
+    candidates = [
         (abs(segment["end_s"] - time_s), folder / segment["folder"] / "gas", float(segment["end_s"]))
         for segment in manifest["segments"]
         if any((folder / segment["folder"] / "gas").glob(f"**/{name}"))
     ]
-    if not found:
+    if not candidates:
         raise UserError(f"{folder}: no segment has the gas field {name}; run run_dem again")
-    _, case, end_s = min(found)
+    _, case, end_s = min(candidates)
     return case, end_s
 
 
@@ -127,7 +127,7 @@ def read_gas_field(case: Path, name: str) -> GasField:
     Parameters
     ----------
     case : Path
-        Its times lie in it, or in its folders processor0, processor1, ...
+        With its times in it, or in its folders processor0, processor1, ...
     name : str
         Field, such as ``voidage``.
 
@@ -138,9 +138,9 @@ def read_gas_field(case: Path, name: str) -> GasField:
     Raises
     ------
     UserError
-        The field is not there.
+        The case has no such field.
     """
-    # the reader wants a file beside the case's folders; the case itself is the solver's and stays as it is
+    # the reader needs a file beside the folders of the case, which must not change: links to them serve
     with tempfile.TemporaryDirectory() as temporary:
         for part in case.iterdir():
             (Path(temporary) / part.name).symlink_to(part.resolve())

@@ -1,11 +1,11 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Spheres to start from: lattices and loose heaps, and how dense a bed of them is."""
+"""Spheres at the start of a check: lattices, and the voidage of a bed of spheres."""
 
 import numpy as np
 
 
 def lattice(width: float, height: float, spacing: float, diameter: float) -> np.ndarray:
-    """Square lattice that fills a box evenly up to its walls.
+    """Square lattice that fills a box up to its walls.
 
     Returns
     -------
@@ -14,17 +14,17 @@ def lattice(width: float, height: float, spacing: float, diameter: float) -> np.
     """
     columns, rows = round(width / spacing), round(height / spacing)
     z, x = np.meshgrid((np.arange(rows) + 0.5) * spacing, (np.arange(columns) + 0.5) * spacing, indexing="ij")
-    return at_rest(x.ravel(), z.ravel(), diameter)
+    return spheres_at_rest(x.ravel(), z.ravel(), diameter)
 
 
-def at_rest(x: np.ndarray, z: np.ndarray, diameter: float) -> np.ndarray:
-    """Spheres at rest at these places [m], as rows of x, z, vx, vz, diameter."""
+def spheres_at_rest(x: np.ndarray, z: np.ndarray, diameter: float) -> np.ndarray:
+    """Spheres at rest at given positions [m], as rows of x, z, vx, vz, diameter."""
     still = np.zeros_like(x)
     return np.column_stack([x, z, still, still, np.full_like(x, diameter)])
 
 
-def loose(width: float, number: int, diameter: float, rng: np.random.Generator) -> np.ndarray:
-    """Lattice with gaps and random velocities that falls into a random heap."""
+def loose_lattice(width: float, number: int, diameter: float, rng: np.random.Generator) -> np.ndarray:
+    """Lattice without contacts and with random velocities; it settles into a random packing."""
     columns = int(width / (1.15 * diameter))
     spacing = width / columns
     rows = -(-number // columns)
@@ -34,7 +34,7 @@ def loose(width: float, number: int, diameter: float, rng: np.random.Generator) 
 
 
 def rows_of_voidage(z: np.ndarray, diameter: float, edges: np.ndarray, row_section: float) -> np.ndarray:
-    """Voidage of horizontal rows, each sphere cut exactly by the planes between them.
+    """Voidage of horizontal rows; spheres are divided exactly at the planes between them.
 
     Parameters
     ----------
@@ -48,14 +48,14 @@ def rows_of_voidage(z: np.ndarray, diameter: float, edges: np.ndarray, row_secti
         Width times thickness of the slab [m2].
     """
     radius = diameter / 2
-    # Volume of a sphere below a plane at a height h over its lowest point: pi h^2 (r - h/3)
+    # volume of a sphere below a plane at a height h above its lowest point: pi h^2 (r - h/3)
     depth = np.clip(edges[:, None] - (z[None, :] - radius), 0, diameter)
     below = (np.pi * depth**2 * (radius - depth / 3)).sum(axis=1)
     return np.asarray(1 - np.diff(below) / (row_section * np.diff(edges)))
 
 
 def bulk_voidage(spheres_z: np.ndarray, diameter: float, section: float) -> float:
-    """Voidage of a settled bed between a diameter above the bottom and three below the top.
+    """Voidage of a settled bed from one diameter above its bottom to three below its top.
 
     Parameters
     ----------
@@ -66,7 +66,7 @@ def bulk_voidage(spheres_z: np.ndarray, diameter: float, section: float) -> floa
     section : float
         Width times thickness of the slab [m2].
     """
-    # The top: 2 % of the spheres may lie higher, alone on the surface
+    # 2 % of the spheres may lie singly above the surface
     top = float(np.quantile(spheres_z, 0.98))
     edges = np.array([diameter, top - 3 * diameter])
     return float(rows_of_voidage(spheres_z, diameter, edges, section)[0])

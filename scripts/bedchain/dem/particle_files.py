@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Particles into a LIGGGHTS data file, and out of the dumps of the decks in liggghts_inputs/verify."""
+"""Particles in LIGGGHTS data files, and in the dumps of the decks in liggghts_inputs/verify."""
 
 from pathlib import Path
 from typing import Any
@@ -12,7 +12,7 @@ COLUMNS = ["id", "x", "z", "vx", "vz", "omegay"]
 
 
 def write_particles(file: Path, particles: np.ndarray, parameters: dict[str, Any]) -> None:
-    """Spheres as a LIGGGHTS data file, one layer at y = 0, in the box of the case."""
+    """Write spheres as a LIGGGHTS data file: one layer at y = 0 in the box of the case."""
     depth = 4 * parameters["diameter"]
     lines = ["spheres of a check", "", f"{len(particles)} atoms", "1 atom types", ""]
     lines += [f"0 {parameters['width']!r} xlo xhi", f"{-depth!r} {depth!r} ylo yhi"]

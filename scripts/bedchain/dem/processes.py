@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Run LIGGGHTS, bedFoam and OpenFOAM's tools as child processes that end with this one."""
+"""LIGGGHTS, bedFoam and OpenFOAM's tools as child processes that end with this process."""
 
 import ctypes
 import os
@@ -14,19 +14,19 @@ from pathlib import Path
 
 from bedchain.errors import UserError
 
-PR_SET_PDEATHSIG = 1  # of linux/prctl.h: the signal a child gets when its parent dies
-LINES_SHOWN = 12  # of a solver's last words in an error message
+PR_SET_PDEATHSIG = 1  # of linux/prctl.h: signal to a child when its parent dies
+LINES_SHOWN = 12  # of a solver's log in an error message
 ERROR_LINE = re.compile(r"ERROR|FATAL|error:|No space left|rror while loading")
 
 
 def solver_environment() -> dict[str, str]:
-    """Environment of the solvers; what the user has set stays."""
+    """Environment of the solvers; variables set by the user are kept."""
     environment = dict(os.environ)
     environment.setdefault("WM_PROJECT_DIR", "/usr/share/openfoam")
     environment.setdefault("OMPI_MCA_rmaps_base_oversubscribe", "1")
-    # An overflow goes on to bedFoam's guards, which say where and when; OpenFOAM's trap knows neither
+    # bedFoam's guards report an overflow with place and time; OpenFOAM's trap gives neither
     environment.setdefault("FOAM_SIGFPE", "false")
-    # On a busy machine a rank that waits gives way
+    # on a busy machine a waiting rank yields its core
     environment.setdefault("OMPI_MCA_mpi_yield_when_idle", "1")
     environment.setdefault("OMPI_MCA_hwloc_base_binding_policy", "none")
     if os.geteuid() == 0:
@@ -35,7 +35,7 @@ def solver_environment() -> dict[str, str]:
 
 
 def on_ranks(command: list[str], ranks: int) -> list[str]:
-    """The command that runs `command` on so many MPI ranks."""
+    """The command line that runs a command on MPI ranks."""
     return command if ranks == 1 else ["mpirun", "-np", str(ranks), *command]
 
 
@@ -45,11 +45,11 @@ def run_deck(deck: Path, variables: Mapping[str, object], log: Path, ranks: int 
     Parameters
     ----------
     deck : Path
-        Its input script.
+        Input script.
     variables : mapping of str to object
-        The deck's variables.
+        Variables of the deck.
     log : Path
-        Gets its output, appended.
+        Gets the output, appended.
     ranks : int
         MPI ranks.
 
@@ -58,8 +58,8 @@ def run_deck(deck: Path, variables: Mapping[str, object], log: Path, ranks: int 
     UserError
         As `run_logged`.
     """
-    given = [word for name, value in variables.items() for word in ("-var", name, str(value))]
-    run_logged(on_ranks(["liggghts", "-in", str(deck), "-log", "none", *given], ranks), log)
+    options = [word for name, value in variables.items() for word in ("-var", name, str(value))]
+    run_logged(on_ranks(["liggghts", "-in", str(deck), "-log", "none", *options], ranks), log)
 
 
 def _end_with_parent() -> None:
@@ -72,7 +72,7 @@ def run_logged(
     each_line: Callable[[str], None] | None = None,
     variables: Mapping[str, str] | None = None,
 ) -> None:
-    """Run a command to its end, its output into `log`.
+    """Run a command to its end, with its output in a log.
 
     Parameters
     ----------
@@ -88,7 +88,7 @@ def run_logged(
     Raises
     ------
     UserError
-        Where the program is not installed or ends with an error: its own error lines, and where the log is.
+        The program is not installed, or ends with an error: its error lines, and the log.
     """
     if shutil.which(command[0]) is None:
         raise UserError(
@@ -118,12 +118,12 @@ def run_logged(
             raise
     if code != 0:
         raise UserError(
-            f"{Path(command[0]).name} ended with code {code}:\n{last_words(log)}\nits whole log: {log}"
+            f"{Path(command[0]).name} ended with code {code}:\n{error_lines(log)}\nits whole log: {log}"
         )
 
 
-def last_words(log: Path) -> str:
-    """The lines of a log from its first error on, or its last ones."""
+def error_lines(log: Path) -> str:
+    """Lines of a log from its first error on, or its last lines without one."""
     lines = [line for line in log.read_text(encoding="utf-8", errors="replace").splitlines() if line.strip()]
     first = next(
         (at for at, line in enumerate(lines) if ERROR_LINE.search(line)), max(len(lines) - LINES_SHOWN, 0)
@@ -132,7 +132,7 @@ def last_words(log: Path) -> str:
 
 
 class Progress:
-    """Says how far a run is, every few seconds, from bedFoam's lines of progress.
+    """Progress of a run on stderr every few seconds, from bedFoam's lines of progress.
 
     Parameters
     ----------
@@ -159,15 +159,15 @@ class Progress:
         totals = self.TOTALS.match(line)
         if totals:
             self.totals = {name: float(value) for name, value in totals.groupdict().items()}
-        found = self.PATTERN.match(line)
-        if not found or time.monotonic() - self.last < self.every_s:
+        progress = self.PATTERN.match(line)
+        if not progress or time.monotonic() - self.last < self.every_s:
             return
         self.last = time.monotonic()
-        now_s, cost = float(found[1]), float(found[2])
+        now_s, cost = float(progress[1]), float(progress[2])
         left = int(cost * max(self.end_s - now_s, 0))
         print(
             f"run_dem: {now_s:.3f} of {self.end_s:g} s simulated, {cost:.0f} s per simulated second, "
-            f"{left // 3600}:{left // 60 % 60:02d}:{left % 60:02d} left ({found[3].strip()})",
+            f"{left // 3600}:{left // 60 % 60:02d}:{left % 60:02d} left ({progress[3].strip()})",
             file=sys.stderr,
             flush=True,
         )

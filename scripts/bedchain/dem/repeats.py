@@ -1,41 +1,41 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Further realisations of a bed: the state of the main run at one time, each velocity changed a little."""
+"""Repeats of a bed: further realisations from a state of the main run with perturbed velocities."""
 
 from pathlib import Path
 from typing import Any
 
-from bedchain.dem.gas_case import copy_last_state, cut_for_ranks
+from bedchain.dem.gas_case import copy_last_state, redistribute
 from bedchain.dem.processes import run_deck
 from bedchain.dem.segments import RESTART, SegmentedRun
 from bedchain.errors import UserError
-from bedchain.files import whole_folder
+from bedchain.files import atomic_folder
 from bedchain.physics.whole_numbers import is_prime
 
 DECK = "in.perturb"
 PERTURBED = "perturbed"
-# rms 0.003 m/s, 1 % of the particles' rms velocity in the short bed: particles are a diameter apart after
-# 0.08 s, their velocities unlike (correlation below 1/e) after 0.6 s
+# rms 0.003 m/s, 1 % of the particles' rms velocity in the short bed: the same particle of two repeats is a
+# diameter apart after 0.08 s, its velocities are uncorrelated (below 1/e) after 0.6 s
 KICK_M_S = 5e-3
-# repeats have seeds so far apart that the next prime is never that of their neighbour
+# so large that two repeats never take the same prime
 SEED_SPACING = 1000
-# what LIGGGHTS takes
+# range that LIGGGHTS accepts
 SMALLEST_SEED, LARGEST_SEED = 10007, 2**31 - 1
 
 
 def repeat_folder(case: Path, number: int) -> Path:
-    """Where a repeat's results are: ``results/<case>/repeats/<number>``."""
+    """Folder of a repeat's results, ``results/<case>/repeats/<number>``."""
     return case / "repeats" / str(number)
 
 
 def kick_seed(seed: int, number: int) -> int:
-    """Seed of a repeat's perturbation, a prime: LIGGGHTS takes no other.
+    """Seed of a repeat's perturbation, a prime as LIGGGHTS demands.
 
     Parameters
     ----------
     seed : int
-        Of the case.
+        Seed of the case.
     number : int
-        Of the repeat, from 1.
+        Number of the repeat, from 1.
     """
     span = LARGEST_SEED - SEED_SPACING - SMALLEST_SEED
     wanted = SMALLEST_SEED + (seed + SEED_SPACING * number - SMALLEST_SEED) % span
@@ -50,17 +50,17 @@ def segment_that_ends(manifest: dict[str, Any], time_s: float) -> Path:
     manifest : dict
         Of the run, ``dem.json``.
     time_s : float
-        [s].
+        End of the segment [s].
 
     Returns
     -------
     Path
-        Relative to the folder of ``dem.json``.
+        Folder, relative to that of ``dem.json``.
 
     Raises
     ------
     UserError
-        No segment ends there.
+        No segment ends at that time.
     """
     ends = {float(segment["end_s"]): Path(segment["folder"]) for segment in manifest["segments"]}
     nearest = min(ends, key=lambda end: abs(end - time_s))
@@ -74,14 +74,14 @@ def segment_that_ends(manifest: dict[str, Any], time_s: float) -> Path:
 
 
 def perturb(run: SegmentedRun, segment: Path, decks: Path, seed: int, speed_m_s: float = KICK_M_S) -> None:
-    """Leave a perturbed copy of a segment's last state, of particles and gas, as a run's origin.
+    """Write a perturbed copy of a segment's last state, of particles and gas, as the origin of a repeat.
 
-    The segment may be of a run on other ranks.
+    The segment may come from a run on another number of ranks.
 
     Parameters
     ----------
     run : SegmentedRun
-        Its ``state`` gets the folder ``origin``; one that is there stays.
+        Its ``state`` gets the folder ``origin``, unless it exists.
     segment : Path
         Folder with ``particles.restart`` and ``gas``.
     decks : Path
@@ -89,13 +89,13 @@ def perturb(run: SegmentedRun, segment: Path, decks: Path, seed: int, speed_m_s:
     seed : int
         A prime above 10000.
     speed_m_s : float
-        Each velocity along x and along z is changed by up to this much, evenly distributed [m/s].
+        Largest change of a velocity along x and along z, uniformly distributed [m/s].
     """
     if (run.state / run.origin).exists():
         return
-    with whole_folder(run.state / run.origin) as part:
+    with atomic_folder(run.state / run.origin) as part:
         copy_last_state(segment / "gas", part / "gas")
-        cut_for_ranks(part / "gas", segment / "gas", run.ranks)
+        redistribute(part / "gas", segment / "gas", run.ranks)
         variables = {
             "decks": decks,
             "parameters": run.case / "parameters.lig",

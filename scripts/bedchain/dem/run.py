@@ -36,7 +36,7 @@ from bedchain.dem.segments import (
     write_record,
 )
 from bedchain.errors import UserError
-from bedchain.files import complete, exclusive, whole_folder, write_text
+from bedchain.files import atomic_file, atomic_folder, locked_folder, write_text
 from bedchain.trajectory.store import read_manifest
 
 SOLVER = Path("results/bin/bedFoam")
@@ -53,7 +53,7 @@ def input_files(folder: Path) -> list[Path]:
     UserError
         Parameters or solver are missing.
     """
-    if drum.turns(folder):
+    if drum.is_drum(folder):
         return drum.input_files(folder, DECKS)
     given = [folder / "parameters.lig", folder / "caseParameters", SOLVER]
     decks = [DECKS / "in.settle", DECKS / "in.fluidize", *sorted((DECKS / "include").glob("*.in"))]
@@ -82,8 +82,8 @@ def settle(run: SegmentedRun) -> None:
     if (run.state / run.origin).exists():
         return
     print("run_dem: settling the particles without gas", flush=True)
-    name = drum.FILL if drum.turns(run.case) else "in.settle"
-    with whole_folder(run.state / run.origin) as part:
+    name = drum.FILL if drum.is_drum(run.case) else "in.settle"
+    with atomic_folder(run.state / run.origin) as part:
         variables = {"decks": DECKS, "parameters": run.case / "parameters.lig", "output": part}
         run_deck(DECKS / name, variables, part / "liggghts.log", run.ranks)
 
@@ -113,9 +113,9 @@ def run_segment(run: SegmentedRun, index: int, steps: tuple[int, int]) -> Segmen
     step_s = float(parameters["dem_step"])
     name = f"segment_{index:04d}"
     previous = run.state / (f"segment_{index - 1:04d}" if index > 1 else run.origin)
-    if drum.turns(run.case):
+    if drum.is_drum(run.case):
         return drum.run_segment(run, index, steps, previous, DECKS)
-    with whole_folder(run.state / name) as part:
+    with atomic_folder(run.state / name) as part:
         settings: dict[str, object] = {
             "ranks": run.ranks,
             "start_time": round(steps[0] * step_s, 9),
@@ -191,7 +191,7 @@ def run_dem(folder: Path, end_s: float, segment_s: float, ranks: int) -> None:
     """
     end, length = whole_steps(folder, {"--end": end_s, "--segment": segment_s})
     run = SegmentedRun(folder, folder, input_stamp(input_files(folder), ranks), ranks, 0, end, SETTLED)
-    with exclusive(folder / "dem"):
+    with locked_folder(folder / "dem"):
         settle(run)
         advance(run, length)
 
@@ -232,7 +232,7 @@ def repeat_dem(
         [*input_files(folder), DECKS / DECK, segment / RESTART], ranks, f"{number} {kick_m_s}"
     )
     run = SegmentedRun(folder, results, stamp, ranks, start, end, PERTURBED)
-    with exclusive(results / "dem"):
+    with locked_folder(results / "dem"):
         seed = kick_seed(int(read_parameters(folder / "parameters.lig")["seed"]), number)
         perturb(run, segment, DECKS, seed, kick_m_s)
         advance(run, length)
@@ -253,10 +253,10 @@ def advance(run: SegmentedRun, segment_steps: int) -> None:
 def write_results(run: SegmentedRun, segments: list[Segment]) -> None:
     """Write ``bed_series.csv`` and ``dem.json`` of the finished segments, moved into place when complete."""
     content = manifest(run, segments)
-    inside = "" if drum.turns(run.case) else "gas"
+    inside = "" if drum.is_drum(run.case) else "gas"
     files = [run.state / segment.folder / inside / drum.SERIES for segment in segments]
     series = pd.concat(map(pd.read_csv, files))
     end_s = run.end_step * float(str(content["dem_step_s"])) * (1 + 1e-9)
-    with complete(run.results / "bed_series.csv") as temporary:
+    with atomic_file(run.results / "bed_series.csv") as temporary:
         series[series["time_s"] <= end_s].to_csv(temporary, index=False)
     write_text(run.results / "dem.json", json.dumps(content, indent=1))

@@ -1,8 +1,9 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Segments of a DEM run: each ends in a restart of both solvers and exists either whole or not at all.
+"""Segments of a DEM run: each ends in a restart of both solvers, and exists complete or not at all.
 
-A segment is made in a folder ``<name>.part`` and renamed when everything in it is complete, so that whatever
-is killed, the folder of the finished ones is the state to go on from.
+A segment is written into a folder ``<name>.part`` and renamed when it is complete, so that a killed run
+continues after its last finished segment. The start of a segment computes one force anew, and a fluidized bed
+is chaotic: ``segment_s`` and the number of ranks pick another realisation of the same bed, without bias.
 """
 
 import hashlib
@@ -13,7 +14,7 @@ from pathlib import Path
 
 from bedchain.errors import UserError
 
-STAMP_DIGITS = 12  # of sha256: enough that two sets of inputs never share a folder
+STAMP_DIGITS = 12  # of sha256: two sets of inputs never share a folder
 SETTLED = "settled"
 RESTART = "particles.restart"
 RECORD = "segment.json"
@@ -56,7 +57,7 @@ class SegmentedRun:
 
 @dataclass(frozen=True)
 class Segment:
-    """One finished segment.
+    """A finished segment.
 
     Attributes
     ----------
@@ -65,9 +66,9 @@ class Segment:
     start_step, end_step : int
         Steps of the particles.
     folder : str
-        Its folder's name.
+        Name of its folder.
     wall_s, dem_s, exchange_s, gas_s : float
-        Wall time of the solver's loop and its split [s].
+        Wall time of the solver's loop, and its shares in particles, exchange and gas [s].
     """
 
     index: int
@@ -81,15 +82,16 @@ class Segment:
 
 
 def input_stamp(files: list[Path], ranks: int, numbers: str = "") -> str:
-    """Name for a set of inputs: the same bytes in the same order on as many ranks give the same run.
+    """Name of a set of inputs: equal bytes in equal order on equally many ranks give the same run.
 
     Parameters
     ----------
     files : list of Path
+        Inputs of the run.
     ranks : int
         MPI ranks.
     numbers : str
-        Whatever else decides about the run.
+        Other inputs, as text.
     """
     digest = hashlib.sha256(f"{ranks} ranks{numbers}".encode())
     for file in files:
@@ -103,14 +105,14 @@ def read_parameters(file: Path) -> dict[str, float | str]:
     Raises
     ------
     UserError
-        Where the file is missing.
+        The file is missing.
     """
     if not file.exists():
         raise UserError(f"{file} is missing: run scripts/write_parameters.py first")
-    found = re.findall(
+    variables = re.findall(
         r"^variable (\w+) (equal|string) (\S+)", file.read_text(encoding="utf-8"), re.MULTILINE
     )
-    return {name: float(value) if style == "equal" else value for name, style, value in found}
+    return {name: float(value) if style == "equal" else value for name, style, value in variables}
 
 
 def frame_columns(parameters: dict[str, float | str]) -> list[str]:
@@ -119,7 +121,7 @@ def frame_columns(parameters: dict[str, float | str]) -> list[str]:
 
 
 def finished_segments(folder: Path) -> list[Segment]:
-    """Finished segments of a run, in order, up to the first that is missing."""
+    """Finished segments of a run, in order, up to the first missing one."""
     segments: list[Segment] = []
     while True:
         record = folder / f"segment_{len(segments) + 1:04d}" / RECORD
@@ -129,7 +131,7 @@ def finished_segments(folder: Path) -> list[Segment]:
 
 
 def write_record(folder: Path, segment: Segment) -> None:
-    """Leave a segment's record in its folder; what has one is finished."""
+    """Write the record of a segment into its folder, which marks the segment as finished."""
     (folder / RECORD).write_text(json.dumps(asdict(segment), indent=1), encoding="utf-8")
 
 
@@ -158,13 +160,13 @@ def keep_own_frames(
 
 
 def manifest(run: SegmentedRun, segments: list[Segment]) -> dict[str, object]:
-    """What ``dem.json`` says: all frames up to the end in order, and the segments that hold them.
+    """Content of ``dem.json``: all frames up to the end in order, and the segments that hold them.
 
     Parameters
     ----------
     run : SegmentedRun
     segments : list of Segment
-        That reach the end.
+        Up to the end of the run.
     """
     parameters = read_parameters(run.case / "parameters.lig")
     step_s, frame_steps = float(parameters["dem_step"]), int(parameters["frame_steps"])

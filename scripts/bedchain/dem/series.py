@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""The series of a bed as a whole, bed_series.csv, as the solvers write it."""
+"""The time series of a whole bed, bed_series.csv."""
 
 from pathlib import Path
 
@@ -8,8 +8,6 @@ import pandas as pd
 from bedchain.errors import UserError
 
 SERIES_COLUMNS = ("time_s", "mean_height_m")
-
-
 GAS_COLUMNS = (
     "pressure_drop_Pa",
     "smallest_voidage_1",
@@ -20,7 +18,7 @@ GAS_COLUMNS = (
 
 
 def read_series(path: Path) -> pd.DataFrame:
-    """What the solver wrote of the bed as a whole, step by step.
+    """Time series of a whole bed, as the solver or the drum writes it.
 
     Parameters
     ----------
@@ -30,12 +28,12 @@ def read_series(path: Path) -> pd.DataFrame:
     Returns
     -------
     DataFrame
-        With the columns of `SERIES_COLUMNS`, and where there is gas with those of `GAS_COLUMNS`.
+        With the columns of `SERIES_COLUMNS` and, in a bed with gas, `GAS_COLUMNS`.
 
     Raises
     ------
     UserError
-        A column is missing.
+        The file cannot be read, or a column is missing.
     """
     try:
         table = pd.read_csv(path)

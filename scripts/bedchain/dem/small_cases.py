@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Small cases for the real solvers: inputs from a case file, particles from a table, results as arrays."""
+"""Small cases that check the solvers: inputs from a case file, particles from a table, results as arrays."""
 
 import shutil
 from dataclasses import dataclass, field, replace
@@ -18,8 +18,8 @@ from bedchain.dem.processes import run_deck, run_logged
 
 DECKS = Path("liggghts_inputs")
 GAS_CASE = Path("openfoam_case")
-TIGHT = 1e-13  # tolerance of the linear solvers where round-off is asked for
-FRAMES = 4  # the fewest that the windows of a case can share; the checks need no windows
+TIGHT = 1e-13  # tolerance of the linear solvers for results to round-off
+FRAMES = 4  # the fewest for the windows of a case, which the checks do not use
 
 
 @dataclass(frozen=True)
@@ -29,13 +29,13 @@ class Setup:
     Attributes
     ----------
     folder : Path
-        Where it runs; emptied first.
+        Folder of its files; emptied first.
     sections : dict
-        Keys of a case file that differ from the schema's defaults, by section.
+        Keys of a case file, by section, where they differ from the schema's defaults.
     particles : (n, 5) ndarray
         x, z [m], vx, vz [m/s] and diameter [m] of each sphere.
     numbers : dict
-        Numbers that no case file gives, by the names that solvers and decks know.
+        Numbers that no case file has, by their names in solvers and decks.
     """
 
     folder: Path
@@ -45,7 +45,7 @@ class Setup:
 
 
 def case_of(setup: Setup) -> dict[str, Any]:
-    """Content of the case file: what the checks do not need is filled in so that the schema accepts it."""
+    """Content of the case file; sections that the checks do not use are filled in for the schema."""
     sections = setup.sections
     frame = sections["time"]["frame_interval_s"]
     moments = {"figures": {"moments_s": [frame], "batch_height_m": sections["bed"]["height_m"] / 2}}
@@ -64,7 +64,7 @@ def case_of(setup: Setup) -> dict[str, Any]:
 
 
 def write_inputs(setup: Setup) -> dict[str, Any]:
-    """Empty the folder and write case file, parameters of both solvers and particles into it.
+    """Write case file, parameters of both solvers and particles into the emptied folder.
 
     Returns
     -------
@@ -75,17 +75,17 @@ def write_inputs(setup: Setup) -> dict[str, Any]:
     setup.folder.mkdir(parents=True)
     file = setup.folder / "case.yaml"
     file.write_text(yaml.safe_dump(case_of(setup), sort_keys=False), encoding="utf-8")
-    left = {"frozen": 0} | setup.numbers
+    numbers = {"frozen": 0} | setup.numbers
     parameters = [
-        replace(given, value=left.pop(given.name), source="the check") if given.name in left else given
-        for given in solver_parameters(load_case(file), load_schema())
+        replace(item, value=numbers.pop(item.name), source="the check") if item.name in numbers else item
+        for item in solver_parameters(load_case(file), load_schema())
     ]
-    parameters += [Parameter(name, value, "-", "the check") for name, value in left.items()]
+    parameters += [Parameter(name, value, "-", "the check") for name, value in numbers.items()]
     (setup.folder / "parameters.lig").write_text(liggghts_text(parameters), encoding="utf-8")
     (setup.folder / "caseParameters").write_text(openfoam_text(parameters), encoding="utf-8")
-    found = {given.name: given.value for given in parameters}
-    write_particles(setup.folder / "particles.data", setup.particles, found)
-    return found
+    values = {item.name: item.value for item in parameters}
+    write_particles(setup.folder / "particles.data", setup.particles, values)
+    return values
 
 
 def run_particles(setup: Setup, duration_s: float) -> np.ndarray:
@@ -94,7 +94,7 @@ def run_particles(setup: Setup, duration_s: float) -> np.ndarray:
     Returns
     -------
     (n_frames, n_particles, 6) ndarray
-        id, x, z, vx, vz, omegay of each frame, sorted by id; the first is the start.
+        id, x, z, vx, vz, omegay in each frame, sorted by id; the first frame is the start.
     """
     parameters = write_inputs(setup)
     values = {
@@ -126,13 +126,13 @@ def run_gas(
     duration_s : float
         Simulated time [s].
     velocity : str
-        Superficial velocity over time as OpenFOAM writes a function, such as ``table ((0 0) (1 0.5))``.
+        Superficial velocity over time as an OpenFOAM function, such as ``table ((0 0) (1 0.5))``.
     row_every : int
-        Gas steps between two rows of the result.
+        Gas steps from row to row of the result.
     tight : bool
         Solve the gas to round-off.
     slip : bool
-        Let the gas slip along the side walls: a flow in one dimension.
+        Let the gas slip along the side walls: the flow is one-dimensional.
 
     Returns
     -------
@@ -152,7 +152,7 @@ def run_gas(
     if slip:
         changes["0/U"] = "boundaryField { sides { type slip; } }"
     for name, text in changes.items():
-        # Of two entries of one name OpenFOAM takes the later
+        # OpenFOAM takes the last of several entries of a name
         with (gas / name).open("a", encoding="utf-8") as stream:
             stream.write(f"\n{text}\n")
     settings = {

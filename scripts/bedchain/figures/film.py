@@ -7,7 +7,7 @@ import numpy as np
 from matplotlib.colors import to_rgb
 from numpy.typing import NDArray
 
-from bedchain.measures.voidage import profiles
+from bedchain.measures.voidage import Slab, voidage_profiles
 from bedchain.trajectory.frames import Frames
 from bedchain.trajectory.grid import Grid
 
@@ -120,12 +120,8 @@ def voidages(
     """
     columns, rows = round(width_m / cell_m), max(1, round(top_m / cell_m))
     edges = np.linspace(0, width_m, columns + 1), np.linspace(0, top_m, rows + 1)
+    width, slab = width_m / columns, Slab(thickness_m, diameter_m)
     for x, z in zip(frames.x_m[::lag], frames.z_m[::lag], strict=True):
         strip = np.clip(np.digitize(x, edges[0]) - 1, 0, columns - 1)
-        yield np.stack(
-            [
-                profiles(z[None, strip == column], edges[1], width_m / columns, thickness_m, diameter_m)[0]
-                for column in range(columns)
-            ],
-            axis=1,
-        )
+        strips = [voidage_profiles(z[None, strip == at], edges[1], width, slab)[0] for at in range(columns)]
+        yield np.stack(strips, axis=1)

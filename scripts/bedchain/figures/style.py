@@ -15,7 +15,7 @@ from matplotlib.collections import EllipseCollection, QuadMesh
 from matplotlib.colors import Colormap, Normalize
 from matplotlib.figure import Figure
 
-from bedchain.files import complete
+from bedchain.files import atomic_file
 from bedchain.trajectory.grid import Grid
 
 matplotlib.use("Agg")
@@ -95,7 +95,7 @@ def save_figure(figure: Figure, png: Path, pdf: Path, resolution_dpi: int) -> No
         Of the png, and of images in the pdf [dots per inch].
     """
     for target, metadata in ((png, {"Software": None}), (pdf, {"CreationDate": None})):
-        with complete(target) as temporary:
+        with atomic_file(target) as temporary:
             figure.savefig(temporary, dpi=resolution_dpi, metadata=metadata)
 
 

@@ -1,2 +1,2 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""What is measured on positions: mixing, batches, dispersion, voidage."""
+"""Measures of particle positions: mixing, batches, dispersion, voidage."""

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Where a batch of particles is: the batch itself, and its distribution over the cells."""
+"""A batch of particles from the bottom of the bed, and its distribution over the cells."""
 
 from dataclasses import dataclass
 
@@ -28,7 +28,7 @@ class Batch:
 
 
 def batch_of(grid: Grid, cells: np.ndarray, height_m: float) -> np.ndarray:
-    """The particles of the lowest rows of cells.
+    """The batch: particles in the lowest rows of cells.
 
     Parameters
     ----------
@@ -41,11 +41,12 @@ def batch_of(grid: Grid, cells: np.ndarray, height_m: float) -> np.ndarray:
     Returns
     -------
     (n_particles,) ndarray of bool
+        True for the particles of the batch.
 
     Raises
     ------
     UserError
-        No particle is there.
+        The batch is empty.
     """
     rows = max(1, round(height_m / grid.cell_height_m))
     batch = cells < rows * grid.columns
@@ -60,12 +61,14 @@ def share_by_cell(cells: np.ndarray, n_cells: int) -> np.ndarray:
     Parameters
     ----------
     cells : (n_particles,) integer array
+        Cell of each particle.
     n_cells : int
+        Number of cells [1].
 
     Returns
     -------
     (n_cells,) ndarray
-        Sum 1 [1].
+        Shares with the sum 1 [1].
     """
     return np.asarray(np.bincount(cells, minlength=n_cells) / cells.size)
 
@@ -73,15 +76,15 @@ def share_by_cell(cells: np.ndarray, n_cells: int) -> np.ndarray:
 def observed_shares(
     store: CellStore, moments_s: np.ndarray, start_s: float, batch_height_m: float
 ) -> np.ndarray:
-    """The DEM's own distribution of the batch.
+    """Distribution of the batch over the cells in the DEM.
 
     Parameters
     ----------
     store : CellStore
     moments_s : (n_moments,) ndarray
-        After the start [s].
+        Times after the start [s].
     start_s : float
-        When the batch is put in [s].
+        Time at which the batch is marked [s].
     batch_height_m : float
         Height of the batch [m].
 
@@ -96,6 +99,6 @@ def observed_shares(
     return np.array([share_by_cell(store.cells[frame][batch], store.grid.n_cells) for frame in frames])
 
 
-def total_variation(one: NDArray[np.float64], two: NDArray[np.float64]) -> float:
-    """Total-variation distance of two distributions over cells, each brought to sum 1; 0 to 1 [1]."""
-    return float(0.5 * np.abs(one / one.sum() - two / two.sum()).sum())
+def total_variation(p: NDArray[np.float64], q: NDArray[np.float64]) -> float:
+    """Total-variation distance of two distributions over cells, each scaled to the sum 1; 0 to 1 [1]."""
+    return float(0.5 * np.abs(p / p.sum() - q / q.sum()).sum())

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""How fast particles spread, by height: drift and dispersion coefficients from displacements."""
+"""Drift and dispersion coefficients of the particles by height, from displacements."""
 
 from dataclasses import dataclass
 
@@ -19,7 +19,7 @@ class Dispersion:
     height_m : (n_layers,) array
         Middle of each layer [m].
     displacements : (n_layers,) int64 array
-        Displacements seen [1].
+        Number of displacements [1].
     drift_m_s : (n_layers, 2) array
         Mean velocity along x and z [m/s]; NaN in a layer without particles.
     dispersion_m2_s : (n_layers, 2) array
@@ -42,7 +42,7 @@ def dispersion_by_height(
     x_m, z_m : (n_frames, n_particles) array
         Positions [m].
     edges_m : (n_layers + 1,) array
-        Rising heights that bound the layers [m]; particles outside them do not count.
+        Bounds of the layers, ascending [m]; particles outside them do not count.
     lag : Lag
 
     Returns
@@ -66,13 +66,13 @@ def dispersion_by_height(
     for frame in range(len(x_m) - lag.frames):
         layer = np.digitize(z_m[frame], edges_m)
         number += np.bincount(layer, minlength=n_layers + 2)
-        for axis, place in enumerate((x_m, z_m)):
-            step = np.subtract(place[frame + lag.frames], place[frame], dtype=np.float64)
+        for axis, position in enumerate((x_m, z_m)):
+            step = np.subtract(position[frame + lag.frames], position[frame], dtype=np.float64)
             sums[axis] += np.bincount(layer, step, n_layers + 2)
             squares[axis] += np.bincount(layer, step**2, n_layers + 2)
-    seen = np.where(number > 0, number, np.nan)[1:-1]
-    mean = sums[:, 1:-1] / seen
-    variance = np.maximum(squares[:, 1:-1] / seen - mean**2, 0.0)
+    counts = np.where(number > 0, number, np.nan)[1:-1]
+    mean = sums[:, 1:-1] / counts
+    variance = np.maximum(squares[:, 1:-1] / counts - mean**2, 0.0)
     middle = 0.5 * (edges_m[:-1] + edges_m[1:])
     return Dispersion(
         middle, number[1:-1].astype(np.int64), (mean / lag.seconds).T, (variance / (2 * lag.seconds)).T

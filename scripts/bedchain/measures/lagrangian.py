@@ -1,9 +1,9 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""What particles do as seen from themselves: mean-square displacement, autocorrelation, dispersion.
+"""Lagrangian statistics of particles: mean-square displacement, autocorrelation, dispersion.
 
-A chain says in which cell a particle is, not where in it: its particles stand in the middles of their cells.
-Standing there adds to every statistic what it also adds to the DEM's own particles when these are put into
-the middles of the same cells; that much, measured on the DEM, is taken off again (`corrected`).
+A chain knows the cell of a particle, not its position in the cell, so its particles are put at the cell
+centres. The error of that is measured on the DEM, with its particles at their positions and at the centres of
+the same cells, and subtracted from the statistics of the chain (`corrected`).
 """
 
 from dataclasses import dataclass
@@ -18,11 +18,11 @@ from bedchain.trajectory.grid import Grid
 
 Array = NDArray[np.float64]
 
-# origins of displacements: more are too alike to say more, and cost time
+# origins of displacements: more are nearly the same, and cost time
 MOST_ORIGINS = 40
-# blocks of origins that intervals are drawn from
+# blocks of origins, from which error bars are drawn
 BLOCKS = 5
-# a variance of fewer displacements says nothing of a layer
+# in a layer: a variance of fewer is too uncertain
 FEWEST_DISPLACEMENTS = 100
 
 
@@ -33,9 +33,9 @@ class Places:
     Parameters
     ----------
     x_m, z_m : (n_frames, n_particles) array
-        [m].
+        Positions [m].
     interval_s : float
-        Between two frames [s].
+        Time between two frames [s].
     """
 
     x_m: NDArray[np.floating]
@@ -45,7 +45,7 @@ class Places:
 
 @dataclass(frozen=True)
 class Statistics:
-    """Lagrangian statistics of one set of places, in `BLOCKS` blocks of origins (or fewer).
+    """Lagrangian statistics of positions, in at most `BLOCKS` blocks of origins.
 
     Parameters
     ----------
@@ -54,13 +54,13 @@ class Statistics:
     squared_m2 : (n_blocks, n_times, 2) array
         Mean-square displacement along x and z [m2].
     product_m2 : (n_blocks, n_times, 2) array
-        Mean product of displacements over ``span_s`` that start as far apart [m2].
+        Mean product of two displacements over ``span_s`` whose starts are that time apart [m2].
     span_s : float
-        [s].
+        Duration of these displacements [s].
     dispersion_m2_s : (n_layers, 2) array
         Dispersion coefficient of each layer over ``span_s`` [m2/s].
     displacements : (n_layers,) array
-        Displacements that start in each layer [1].
+        Number of displacements that start in each layer [1].
     """
 
     times_s: Array
@@ -72,29 +72,29 @@ class Statistics:
 
     @property
     def autocorrelation(self) -> Array:
-        """Displacement autocorrelation along x and z, (n_times, 2): product over that at time 0 [1]."""
+        """Displacement autocorrelation along x and z, (n_times, 2), over its value at time 0 [1]."""
         product = self.product_m2.mean(axis=0)
         return np.asarray(product / product[0])
 
 
 def in_cells(grid: Grid, cells: NDArray[np.integer], interval_s: float) -> Places:
-    """Particles in the middles of their cells; single precision, there are many."""
+    """Particles at the centres of their cells, in single precision to save memory."""
     centres = grid.centres_m.astype(np.float32)
     return Places(centres[cells, 0], centres[cells, 1], interval_s)
 
 
 def statistics(places: Places, steps: NDArray[np.integer], span: int, edges_m: Array) -> Statistics:
-    """Lagrangian statistics of places.
+    """Lagrangian statistics of positions.
 
     Parameters
     ----------
     places : Places
     steps : (n_times,) int array
-        Rising numbers of frames between the ends of a displacement, the first 0 [1].
+        Frames between the ends of a displacement, ascending from 0 [1].
     span : int
-        Frames in the displacements whose autocorrelation and dispersion are wanted [1].
+        Frames in the displacements of the autocorrelation and the dispersion [1].
     edges_m : (n_layers + 1,) array
-        Heights that bound the layers of the dispersion [m].
+        Bounds of the layers of the dispersion [m].
 
     Returns
     -------
@@ -103,7 +103,7 @@ def statistics(places: Places, steps: NDArray[np.integer], span: int, edges_m: A
     Raises
     ------
     DataError
-        The frames hold no displacement of the longest time and the span together.
+        The frames are fewer than the longest time and the span together.
     """
     room = len(places.x_m) - int(steps[-1]) - span
     if room < 1:
@@ -122,26 +122,26 @@ def statistics(places: Places, steps: NDArray[np.integer], span: int, edges_m: A
                 squared[row, column, axis] = np.mean((later - begin) ** 2)
                 product[row, column, axis] = np.mean(first * (place[origin + step + span] - later))
     span_s = span * places.interval_s
-    found = dispersion_by_height(places.x_m, places.z_m, edges_m, Lag(span, span_s))
+    dispersion = dispersion_by_height(places.x_m, places.z_m, edges_m, Lag(span, span_s))
     return Statistics(
         np.asarray(steps * places.interval_s, float),
         _by_block(squared),
         _by_block(product),
         span_s,
-        found.dispersion_m2_s,
-        found.displacements.astype(float),
+        dispersion.dispersion_m2_s,
+        dispersion.displacements.astype(float),
     )
 
 
 def corrected(model: Statistics, dem: Statistics, dem_in_cells: Statistics) -> Statistics:
-    """A chain's statistics less what standing in the middles of cells adds to the DEM's.
+    """Statistics of a chain less the error of cell centres, measured on the DEM.
 
     Parameters
     ----------
     model : Statistics
-        Of the chain's particles, in the middles of their cells.
+        Of the chain's particles, at the centres of their cells.
     dem, dem_in_cells : Statistics
-        Of the DEM's particles where they are, and in the middles of the same cells.
+        Of the DEM's particles at their positions, and at the centres of the same cells.
 
     Returns
     -------
@@ -162,7 +162,7 @@ def corrected(model: Statistics, dem: Statistics, dem_in_cells: Statistics) -> S
 
 
 def dispersion_error(model: Statistics, dem: Statistics) -> tuple[Array, Array]:
-    """How far a chain's dispersion coefficients are from the DEM's, layer by layer, over the DEM's mean.
+    """Error of a chain's dispersion coefficients against the DEM's, over the layers.
 
     Returns
     -------

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Mixing of marked groups: how many are still on their side, and how evenly they are spread."""
+"""Mixing of marked groups: share that is still on its side, and Lacey's index."""
 
 from typing import Any, NamedTuple
 
@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 from bedchain.errors import DataError
 from bedchain.trajectory.grid import Grid
 
-# (direction, group) in the order of every array with an axis of 4 here.
+# (direction, group), in the order of all arrays with an axis of 4
 GROUPS = (("radial", "left"), ("radial", "right"), ("axial", "low"), ("axial", "up"))
 
 
@@ -30,14 +30,14 @@ class Splits(NamedTuple):
 def sides(
     x_m: NDArray[np.floating], z_m: NDArray[np.floating], split_x_m: float, split_z_m: float
 ) -> NDArray[np.bool_]:
-    """Which particles are left, right, low and up.
+    """Particles that are left, right, low and up.
 
     Parameters
     ----------
     x_m, z_m : (..., n_particles) array
         Positions [m].
     split_x_m, split_z_m : float
-        Lines between left and right, and between low and up [m]; left and low are strictly below them.
+        Lines between left and right, and between low and up [m]; a particle on a line is right or up.
 
     Returns
     -------
@@ -51,8 +51,8 @@ def sides(
 def side_shares(grid: Grid, split_x_m: float, split_z_m: float) -> NDArray[np.float64]:
     """Share of each cell that lies on each side.
 
-    A line that cuts through a column (or row) of cells gives each side its part of the cell's area: particles
-    count as evenly spread in their cell, which is all that a chain of cells knows of them.
+    A cell that a line divides counts with the share of its area on each side, as if its particles were evenly
+    spread: a chain of cells does not know where they are in the cell.
 
     Parameters
     ----------
@@ -78,7 +78,7 @@ def side_shares(grid: Grid, split_x_m: float, split_z_m: float) -> NDArray[np.fl
             )
     left = np.clip((split_x_m - grid.x_edges_m[:-1]) / grid.cell_width_m, 0.0, 1.0)
     low = np.clip((split_z_m - grid.z_edges_m[:-1]) / grid.cell_height_m, 0.0, 1.0)
-    # A line on an edge, up to rounding, cuts no cell.
+    # a line on an edge, up to round-off, divides no cell
     left, low = (np.where(np.abs(s - np.round(s)) < 1e-9, np.round(s), s) for s in (left, low))
     of_left, of_low = np.tile(left, grid.rows), np.repeat(low, grid.columns)
     return np.stack((of_left, 1 - of_left, of_low, 1 - of_low))
@@ -117,12 +117,12 @@ def remaining_over_starts(
     steps: int,
     lag: int = 1,
 ) -> NDArray[np.float64]:
-    """`remaining_from_positions` from every frame that ``steps`` lags follow: the spread of the DEM itself.
+    """`remaining_from_positions` from every start that ``steps`` lags follow: the scatter within the DEM.
 
     Returns
     -------
     (n_starts, steps + 1, 4) array
-        Particles are marked anew at each start.
+        Shares [1]; the particles are marked anew at each start.
 
     Raises
     ------
@@ -147,7 +147,7 @@ def remaining_over_starts(
 def remaining_from_cells(
     cells: NDArray[np.int32], marked: NDArray[np.bool_], shares: NDArray[np.float64]
 ) -> NDArray[np.float64]:
-    """The same curves from cell numbers alone, as a chain of cells would see them.
+    """The curves of `remaining_from_positions` from cells alone, for comparison with a chain of cells.
 
     Parameters
     ----------
@@ -161,7 +161,7 @@ def remaining_from_cells(
     Returns
     -------
     (n_frames, 4) array
-        Less than 1 in the first frame where a split cuts through cells.
+        Shares [1]; less than 1 in the first frame where a line divides cells.
     """
     remaining = np.empty((len(cells), 4))
     for frame in range(len(cells)):
@@ -213,7 +213,7 @@ def marked_histogram(
 
 
 def lacey_index(marked: NDArray[Any], total: NDArray[Any]) -> float:
-    """Lacey's mixing index of a marked group over cells: 0 apart, 1 as well mixed as dice would do it.
+    """Lacey's mixing index of a marked group over cells: 0 separated, 1 a random mixture (expected value).
 
     ``M = (s0^2 - s^2) / (s0^2 - sr^2)`` with the variance s^2 of the marked share over the cells weighted
     by their particles, ``s0^2 = c (1 - c)`` and ``sr^2 = c (1 - c) / n`` for n particles a cell (Lacey
@@ -233,9 +233,9 @@ def lacey_index(marked: NDArray[Any], total: NDArray[Any]) -> float:
     n = np.asarray(total[held], float)
     share = np.asarray(marked[held], float) / n
     c = float((share * n).sum() / n.sum())
-    apart = c * (1 - c)
-    by_dice = apart * held.sum() / n.sum()
-    if apart <= 0 or apart <= by_dice:
+    separated = c * (1 - c)
+    random_mixture = separated * held.sum() / n.sum()
+    if separated <= 0 or separated <= random_mixture:
         return float("nan")
-    spread = float((n * (share - c) ** 2).sum() / n.sum())
-    return (apart - spread) / (apart - by_dice)
+    variance = float((n * (share - c) ** 2).sum() / n.sum())
+    return (separated - variance) / (separated - random_mixture)

@@ -1,11 +1,11 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""What a chain of cells adds to the spreading of particles: it forgets where in its cell a particle is.
+"""Numerical dispersion of a chain of cells, which forgets the position of a particle in its cell.
 
-Moved by d from a place anywhere in a cell of size h, a particle ends a whole number of cells further: the one
-below d / h or the one above, with the probabilities 1 - f and f of the fraction f of d / h. That adds
-h^2 f (1 - f) to the variance of each step, so h^2 E[f (1 - f)] / (2 tau) to the dispersion coefficient. What
-the chain takes away is the memory of the velocity: over a lag tau the particles spread as <d^2> / (2 tau),
-which still rises while the lag is shorter than the velocity is correlated.
+A particle that moves by d from a random position in a cell of size h crosses a whole number of cells: d / h
+rounded down or up, with the probabilities 1 - f and f, where f is the fraction of d / h. That adds
+h^2 f (1 - f) to the variance of each step, so h^2 E[f (1 - f)] / (2 tau) to the dispersion coefficient. In
+return the chain loses the memory of the velocity: over a lag tau the particles spread as <d^2> / (2 tau),
+which still rises while the lag is shorter than the correlation time of the velocity.
 """
 
 from typing import NamedTuple
@@ -17,7 +17,7 @@ from bedchain.errors import DataError
 from bedchain.trajectory.frames import Lag
 from bedchain.trajectory.grid import Grid
 
-# displacements are seen from at most about so many frames, evenly spaced: enough for three digits
+# frames, evenly spaced, at which displacements start: enough for three digits
 STARTS = 50
 
 
@@ -29,9 +29,9 @@ class Spreading(NamedTuple):
     particles : (2,) ndarray
         Variance of the displacements over twice the lag [m2/s].
     cells : (2,) ndarray
-        The same of the centres of the particles' cells, which is what the chain learns [m2/s].
+        The same of the centres of the particles' cells, from which the chain learns [m2/s].
     added : (2,) ndarray
-        h^2 E[f (1 - f)] / (2 tau), by which the cells should exceed the particles [m2/s].
+        h^2 E[f (1 - f)] / (2 tau), the excess of the cells in theory [m2/s].
     """
 
     particles: NDArray[np.float64]
@@ -40,7 +40,7 @@ class Spreading(NamedTuple):
 
 
 def spreading(x_m: NDArray[np.floating], z_m: NDArray[np.floating], grid: Grid, lag: Lag) -> Spreading:
-    """Dispersion of particles and of their cells, and the theory of the difference.
+    """Dispersion of particles and of their cells, and the difference in theory.
 
     Parameters
     ----------
@@ -60,7 +60,7 @@ def spreading(x_m: NDArray[np.floating], z_m: NDArray[np.floating], grid: Grid, 
     """
     if not 1 <= lag.frames < len(x_m):
         raise DataError(f"{len(x_m)} frames hold no displacement over {lag.frames} frames: cut the lag")
-    found = np.empty((3, 2))
+    coefficients = np.empty((3, 2))
     for axis, (place, size) in enumerate(((x_m, grid.cell_width_m), (z_m, grid.cell_height_m))):
         moments = np.zeros(5)
         starts = range(0, len(place) - lag.frames, max(1, (len(place) - lag.frames) // STARTS))
@@ -78,5 +78,5 @@ def spreading(x_m: NDArray[np.floating], z_m: NDArray[np.floating], grid: Grid, 
             )
         moments /= len(starts)
         variances = moments[1] - moments[0] ** 2, moments[3] - moments[2] ** 2, moments[4]
-        found[:, axis] = np.array(variances) * size**2 / (2 * lag.seconds)
-    return Spreading(*found)
+        coefficients[:, axis] = np.array(variances) * size**2 / (2 * lag.seconds)
+    return Spreading(*coefficients)

@@ -1,9 +1,9 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Profiles across the bed as a measurement of slices sees them.
+"""Profiles across the bed, averaged over boxes as in measurements.
 
-A measured point is an average over a box (a strip along x, a slice of some height, the whole depth) and over
-time. The voidage of a box is 1 minus the volume of the spheres in it over its own; the velocity is the mean
-over the solid volume in it, as the signal of magnetic resonance comes from the particles' material.
+A measured point is an average over a box (a strip along x, a slice along z, the whole depth) and over time.
+The voidage is 1 minus the volume of the spheres in the box over that of the box. The velocity is the mean
+over the solid volume in the box: the signal of magnetic resonance comes from the material of the particles.
 """
 
 from typing import NamedTuple
@@ -20,11 +20,11 @@ class Boxes(NamedTuple):
     Attributes
     ----------
     x_low_m, x_high_m : (n_boxes,) ndarray
-        Sides [m].
+        Left and right sides [m].
     z_low_m, z_high_m : float
         Bottom and top of the slice [m].
     depth_m : float
-        Along y [m].
+        Size along y [m].
     """
 
     x_low_m: np.ndarray
@@ -42,7 +42,7 @@ class Boxes(NamedTuple):
 def boxes_around(
     positions_m: np.ndarray, strip_m: float, height_m: float, slice_m: float, width_m: float, depth_m: float
 ) -> Boxes:
-    """Boxes with their centres at given positions; what would be behind a side wall is cut off.
+    """Boxes with their centres at given positions, cut off at the side walls.
 
     Parameters
     ----------
@@ -63,7 +63,7 @@ def share_between(centres: np.ndarray, radius: float, low: np.ndarray, high: np.
     """Share of each sphere's volume between two planes [1].
 
     The volume below a plane at a distance ``t r`` from the centre is ``(2 + 3 t - t^3) / 4`` of the sphere
-    (spherical cap). Arguments broadcast.
+    (spherical cap). The arguments broadcast.
     """
     below = [(2 + 3 * t - t**3) / 4 for t in (np.clip((x - centres) / radius, -1, 1) for x in (low, high))]
     return np.asarray(below[1] - below[0])
@@ -72,10 +72,10 @@ def share_between(centres: np.ndarray, radius: float, low: np.ndarray, high: np.
 def solids_in_boxes(
     x_m: np.ndarray, z_m: np.ndarray, vz_m_s: np.ndarray, radius_m: float, boxes: Boxes
 ) -> NDArray[np.float64]:
-    """Volume of spheres in each box, and its vertical momentum over the density, of one frame.
+    """Volume of spheres in each box, and its vertical momentum over the density, in a frame.
 
-    A sphere cut by a side and by the bottom or top of a box counts with the product of both shares. That is
-    its volume in the box on average over heights: exact where the density does not change within a diameter.
+    A sphere cut by a side and by the bottom or top of a box counts with the product of both shares: its
+    volume in the box on average over heights, exact where the density does not change within a diameter.
 
     Parameters
     ----------
@@ -84,7 +84,7 @@ def solids_in_boxes(
     vz_m_s : (n_particles,) ndarray
         Vertical velocities [m/s].
     radius_m : float
-        Of a sphere [m].
+        Radius of a sphere [m].
     boxes : Boxes
 
     Returns
@@ -101,20 +101,20 @@ def solids_in_boxes(
 
 
 def profile(quantity: str, solids: NDArray[np.float64], boxes: Boxes) -> NDArray[np.float64]:
-    """Voidage [1] or particle velocity [m/s] of each box, from the mean over time of `solids_in_boxes`.
+    """Voidage [1] or particle velocity [m/s] of each box, from the time mean of `solids_in_boxes`.
 
     Parameters
     ----------
     quantity : str
         Of `QUANTITIES`.
     solids : (..., 2, n_boxes) ndarray
-        Means over the frames.
+        Means over frames.
     boxes : Boxes
 
     Returns
     -------
     (..., n_boxes) ndarray
-        A velocity where no particle ever was is NaN.
+        The velocity is NaN where no particle was.
     """
     volume, momentum = solids[..., 0, :], solids[..., 1, :]
     if quantity == "voidage_1":

@@ -9,24 +9,23 @@ from numpy.typing import NDArray
 
 @dataclass(frozen=True)
 class Slab:
-    """What the voidage of a slab of equal spheres depends on besides their places.
+    """A slab of equal spheres.
 
     Attributes
     ----------
     thickness_m, diameter_m : float
-        Of the slab, of a particle [m].
+        Thickness of the slab, diameter of the spheres [m].
     """
 
     thickness_m: float
     diameter_m: float
 
 
-def profiles(
+def voidage_profiles(
     z_m: NDArray[np.floating],
     edges_m: NDArray[np.float64],
     width_m: float,
-    thickness_m: float,
-    diameter_m: float,
+    slab: Slab,
 ) -> NDArray[np.float64]:
     """Voidage by height in each frame, 1 - (sphere volume) / (width dz T).
 
@@ -36,14 +35,15 @@ def profiles(
         Heights [m].
     edges_m : (n_rows + 1,) array
         Edges of the rows [m].
-    width_m, thickness_m, diameter_m : float
-        Of the bed, of its slab, of a particle [m].
+    width_m : float
+        Of the bed [m].
+    slab : Slab
 
     Returns
     -------
     (n_frames, n_rows) ndarray
-        [1]
+        Voidage [1].
     """
     held = np.array([np.histogram(z, edges_m)[0] for z in z_m])
-    volume = np.pi / 6 * diameter_m**3
-    return np.asarray(1 - held * volume / (width_m * np.diff(edges_m) * thickness_m))
+    volume = np.pi / 6 * slab.diameter_m**3
+    return np.asarray(1 - held * volume / (width_m * np.diff(edges_m) * slab.thickness_m))

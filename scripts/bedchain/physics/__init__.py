@@ -1,2 +1,2 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Formulas of plain numbers, each with its source; knows no case and no file."""
+"""Formulas with plain numbers as arguments, each with its source; no case and no file is used."""

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Contacts of spheres: the stable step, the modulus of a contact, the overlap at rest."""
+"""Contacts of spheres: Rayleigh time, contact modulus, overlap at rest."""
 
 import math
 
@@ -7,7 +7,7 @@ from bedchain.physics.constants import GRAVITY_M_S2
 
 
 def rayleigh_time(young: float, poisson: float, density: float, radius: float) -> float:
-    """Time of a surface wave over a sphere [s], the scale of the stable step.
+    """Time that a surface wave takes over a sphere [s]: it limits the DEM step.
 
     ``pi r sqrt(rho / G) / (0.1631 nu + 0.8766)``, ``G = E / (2 (1 + nu))`` (Thornton, Randall 1988).
 
@@ -37,8 +37,8 @@ def static_overlap(
     """Overlap of two particles under the weight of a settled bed, over the diameter [1].
 
     ``(3 F / (4 E* sqrt(R*)))^(2/3) / d``, Hertz (Johnson 1985, Contact Mechanics, ch. 4); ``R* = d / 4``,
-    and F what a particle of the lowest layer carries, ``W d / width``, of a bed many particles deep
-    ``W d^2 / (width depth)``.
+    and F the load on a particle of the lowest layer, ``W d / width`` in a bed of one layer and
+    ``W d^2 / (width depth)`` in a deeper one, for a bed of weight W.
 
     Parameters
     ----------
@@ -47,9 +47,9 @@ def static_overlap(
     density, diameter : float
         Of the particles [kg/m3], [m].
     number : int
-        Particles [1].
+        Number of particles [1].
     width, depth : float
-        Of the bed, and between the walls in front and behind [m]; a depth below a diameter is one layer.
+        Of the bed [m]; a depth below one diameter stands for one layer.
     """
     weight = number * density * math.pi / 6 * diameter**3 * GRAVITY_M_S2
     load = weight * diameter / width * min(1.0, diameter / depth)

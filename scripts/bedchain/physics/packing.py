@@ -10,9 +10,9 @@ def slab_voidage(area_share: float, thickness_diameters: float) -> float:
     Parameters
     ----------
     area_share : float
-        Part of the plane that the spheres cover as discs [1].
+        Share of the plane that the spheres cover as discs [1].
     thickness_diameters : float
-        Thickness of the slab over the diameter [1]; one in Xu, Yu 1997, Chem. Eng. Sci. 52, 2785.
+        Thickness of the slab over the diameter [1]; 1 in Xu, Yu 1997, Chem. Eng. Sci. 52, 2785.
     """
     return 1 - 2 / 3 * area_share / thickness_diameters
 
@@ -20,8 +20,8 @@ def slab_voidage(area_share: float, thickness_diameters: float) -> float:
 def converted_thickness(area_share: float) -> float:
     """Thickness that gives the voidage of Hoomans et al. 1996, Chem. Eng. Sci. 51, 99, in diameters [1].
 
-    ``1 - e = 2 / sqrt(pi sqrt(3)) (1 - e_plane)^1.5`` converts a voidage in the plane to one in space. It
-    makes of closest discs closest spheres, as `LAYER_DISTANCE` does, and of looser discs looser spheres.
+    ``1 - e = 2 / sqrt(pi sqrt(3)) (1 - e_plane)^1.5`` converts a voidage in the plane to one in space.
+    Closest-packed discs become closest-packed spheres, as with `LAYER_DISTANCE`.
 
     Parameters
     ----------
@@ -32,31 +32,25 @@ def converted_thickness(area_share: float) -> float:
     return 2 / 3 * area_share / solids
 
 
-PACKED_AREA_SHARE = 0.82  # area covered by one layer of random close-packed discs
-
-
-PACKED_VOLUME_SHARE = 0.6  # volume filled by spheres after a fall, between random loose and random close
-
-
-START_SPACING_DIAMETERS = 1.15  # of the loose lattice that the particles fall from: no contact at the start
-
-
-# Distance of the layers of closest-packed spheres, in diameters: a slab as thick makes of closest discs,
-# 0.907 of the plane, closest spheres, 0.740 of space
+PACKED_AREA_SHARE = 0.82  # of the plane, covered by random close-packed discs
+PACKED_VOLUME_SHARE = 0.6  # of space, filled by settled spheres: between random loose and random close
+START_SPACING_DIAMETERS = 1.15  # of the lattice that the particles fall from: no contact at the start
+# Distance between layers of closest-packed spheres, in diameters. In a slab of this thickness closest discs
+# (0.907 of the plane) have the voidage of closest spheres (0.740 of space).
 LAYER_DISTANCE = math.sqrt(2 / 3)
 
 
 def settled_height(number: int, diameter: float, width: float, depth: float | None = None) -> float:
-    """Height of the settled bed [m], an estimate by random packing.
+    """Height of the settled bed [m], estimated by random packing.
 
     Parameters
     ----------
     number : int
-        Particles [1].
+        Number of particles [1].
     diameter, width : float
         Of a particle and of the bed [m].
     depth : float, optional
-        Between the walls in front and behind [m]; without it the bed is one layer of discs.
+        Distance of the front and back walls [m]; None for a bed of one layer.
     """
     if depth is None:
         return number * math.pi * diameter**2 / 4 / (PACKED_AREA_SHARE * width)
@@ -64,12 +58,12 @@ def settled_height(number: int, diameter: float, width: float, depth: float | No
 
 
 def start_height(number: int, diameter: float, width: float, depth: float | None = None) -> float:
-    """Height of the loose lattice that the particles fall from [m], as ``in.settle`` makes it.
+    """Height of the lattice that the particles fall from in ``in.settle`` [m].
 
     Parameters
     ----------
     number, diameter, width, depth
-        As in `settled_height`; at least one lattice spacing fits into width and depth.
+        As in `settled_height`; width and depth are at least one lattice spacing.
     """
     spacing = START_SPACING_DIAMETERS * diameter
     columns = math.floor(width / spacing)

@@ -1,41 +1,42 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Velocities, forces and times of a scene, from its case alone: what the audit's numbers are made of."""
+"""Velocities, forces and times of a scene, from the numbers of its case: the basis of the audit."""
 
 import math
 from dataclasses import dataclass
 
 from scipy.optimize import brentq
 
+from bedchain.physics import fluidization
 from bedchain.physics.constants import ADIABATIC_INDEX, GRAVITY_M_S2, PRESSURE_PA
 from bedchain.physics.contacts import contact_modulus
 
-NEWTON_REYNOLDS, NEWTON_COEFFICIENT = 1000.0, 0.44  # end of Schiller and Naumann's range, and what follows
-VELOCITY_RANGE_M_S = (1e-12, 1e4)  # where a terminal velocity is looked for
+NEWTON_REYNOLDS, NEWTON_COEFFICIENT = 1000.0, 0.44  # end of Schiller and Naumann's range, drag beyond
+VELOCITY_RANGE_M_S = (1e-12, 1e4)  # bracket of a terminal velocity
 HERTZ_DURATION = 2.868  # of a collision of elastic spheres: Johnson 1985, Contact Mechanics, eq. (11.24)
 
 
 @dataclass(frozen=True)
 class Scene:
-    """The numbers of a case that decide what physics it needs.
+    """The numbers of a case that decide which physics it needs.
 
     Attributes
     ----------
     diameter, density : float
         Of the particles [m], [kg/m3].
     gas_density, viscosity, velocity : float
-        Of the gas [kg/m3], [Pa s], superficial [m/s]; the velocity is 0 where the case has no gas.
+        Of the gas [kg/m3], [Pa s], superficial velocity [m/s]; 0 where the gas is not simulated.
     width, thickness, depth, fall : float
-        Of the bed, of the slab, of the settled particles, and the largest height to fall through [m].
+        Width of the bed, thickness of the slab, depth of the settled particles, largest height of fall [m].
     voidage : float
-        Of the settled bed [1], by the slab's convention.
+        Of the settled bed [1], with the volume of the slab.
     young, poisson, friction, rolling : float
-        Of the contacts as they are run [Pa], [1]; the frictions are of sliding and of rolling.
+        Of the contacts in the simulation [Pa], [1]; sliding and rolling friction.
     cell : float
         Edge of a gas cell [m].
     gas : bool
         Whether the gas is simulated.
     layered : bool
-        Whether particles move along y too, between walls in front and behind.
+        Whether particles also move along y, between a front and a back wall.
     """
 
     diameter: float
@@ -58,48 +59,50 @@ class Scene:
 
     @property
     def volume(self) -> float:
-        """Of a particle [m3]."""
+        """Volume of a particle [m3]."""
         return math.pi / 6 * self.diameter**3
 
     @property
     def weight(self) -> float:
-        """Of a particle, less its buoyancy [N]."""
+        """Weight of a particle less its buoyancy [N]."""
         return (self.density - self.gas_density) * self.volume * GRAVITY_M_S2
 
 
 def archimedes(scene: Scene) -> float:
-    """Weight against viscosity [1], ``rho_g (rho_p - rho_g) g d^3 / mu^2``."""
-    lighter = scene.density - scene.gas_density
-    return scene.gas_density * lighter * GRAVITY_M_S2 * scene.diameter**3 / scene.viscosity**2
+    """Archimedes number [1], ``rho_g (rho_p - rho_g) g d^3 / mu^2``."""
+    difference = scene.density - scene.gas_density
+    return scene.gas_density * difference * GRAVITY_M_S2 * scene.diameter**3 / scene.viscosity**2
 
 
 def reynolds(scene: Scene, velocity: float) -> float:
-    """Reynolds number of a velocity [m/s] with the particle's diameter [1]."""
+    """Reynolds number of a velocity [m/s] and the particle diameter [1]."""
     return scene.gas_density * velocity * scene.diameter / scene.viscosity
 
 
 def ergun_velocity(scene: Scene) -> float:
-    """Superficial velocity at which the gas carries the bed [m/s], by Ergun's equation (1952).
+    """Superficial velocity at which the gas carries the settled bed [m/s], by Ergun 1952."""
+    return fluidization.ergun_velocity(
+        scene.voidage, scene.diameter, scene.density, scene.gas_density, scene.viscosity
+    )
 
-    The positive root of ``1.75 / e^3 Re^2 + 150 (1 - e) / e^3 Re = Ar`` (Kunii, Levenspiel 1991, ch. 3).
-    """
-    cube = scene.voidage**3
-    inertial, viscous = 1.75 / cube, 150 * (1 - scene.voidage) / cube
-    # the root in the form that loses no digits where the viscous term rules
-    root = 2 * archimedes(scene) / (viscous + math.sqrt(viscous**2 + 4 * inertial * archimedes(scene)))
-    return root * scene.viscosity / (scene.gas_density * scene.diameter)
+
+def ergun_gradient(scene: Scene, velocity: float) -> float:
+    """Pressure gradient of the settled bed at a superficial velocity [m/s], by Ergun 1952 [Pa/m]."""
+    return fluidization.ergun_gradient(
+        scene.voidage, scene.diameter, scene.gas_density, scene.viscosity, velocity
+    )
 
 
 def wen_yu_velocity(scene: Scene) -> float:
-    """Minimum fluidization velocity by Wen, Yu 1966, AIChE J. 12, 610 [m/s]: no voidage needed."""
+    """Minimum fluidization velocity by Wen, Yu 1966, AIChE J. 12, 610 [m/s], without a voidage."""
     root = math.sqrt(33.7**2 + 0.0408 * archimedes(scene)) - 33.7
     return root * scene.viscosity / (scene.gas_density * scene.diameter)
 
 
 def pressure_share(scene: Scene) -> float:
-    """Ergun's pressure drop of the settled bed at the scene's velocity, over its weight [1]; 1 fluidizes."""
-    solid, re = 1 - scene.voidage, reynolds(scene, scene.velocity)
-    return (1.75 * re**2 + 150 * solid * re) / scene.voidage**3 / archimedes(scene)
+    """Pressure drop of the settled bed by Ergun over its weight per area [1]; 1 fluidizes it."""
+    weight = (1 - scene.voidage) / scene.volume * scene.weight
+    return ergun_gradient(scene, scene.velocity) / weight
 
 
 def single_drag(scene: Scene, velocity: float) -> float:
@@ -118,29 +121,26 @@ def terminal_velocity(scene: Scene) -> float:
 
 
 def relaxation_time(scene: Scene) -> float:
-    """Time in which gas and a particle would come to one velocity [s], at the terminal one: ``u_t / g``."""
+    """Relaxation time of a particle's velocity to the gas's, at the terminal velocity [s], ``u_t / g``."""
     return terminal_velocity(scene) / GRAVITY_M_S2
 
 
 def gas_relaxation_time(scene: Scene) -> float:
-    """Time in which the settled bed stops its gas [s]: momentum ``rho_g U`` over Ergun's pressure gradient.
+    """Relaxation time of the gas in the settled bed [s]: ``rho_g U`` over Ergun's pressure gradient.
 
-    At least at the velocity of minimum fluidization, which the gas between particles of a bubbling bed has.
+    U is at least the velocity of minimum fluidization, as in the dense phase of a bubbling bed.
     """
     speed = max(scene.velocity, ergun_velocity(scene))
-    solid, e = 1 - scene.voidage, scene.voidage
-    viscous = 150 * solid**2 / e**3 * scene.viscosity * speed / scene.diameter**2
-    inertial = 1.75 * solid / e**3 * scene.gas_density * speed**2 / scene.diameter
-    return scene.gas_density * speed / (viscous + inertial)
+    return scene.gas_density * speed / ergun_gradient(scene, speed)
 
 
 def grain_velocity(scene: Scene) -> float:
-    """Relative velocity of neighbours in a dense bed [m/s]: the fall over one diameter, ``sqrt(g d)``."""
+    """Relative velocity of neighbours in a dense bed [m/s], ``sqrt(g d)``: a fall over half a diameter."""
     return math.sqrt(GRAVITY_M_S2 * scene.diameter)
 
 
 def collision_time(scene: Scene) -> float:
-    """Time between a particle's collisions in the settled bed [s], ``1 / (n pi d^2 v)``."""
+    """Time between two collisions of a particle in the settled bed [s], ``1 / (n pi d^2 v)``."""
     number_density = (1 - scene.voidage) / scene.volume
     return 1 / (number_density * math.pi * scene.diameter**2 * grain_velocity(scene))
 
@@ -163,5 +163,5 @@ def free_path(scene: Scene) -> float:
 
 
 def hydraulic_diameter(scene: Scene) -> float:
-    """Of the slab's cross section [m], ``2 W T / (W + T)``."""
+    """Hydraulic diameter of the slab's cross section [m], ``2 W T / (W + T)``."""
     return 2 * scene.width * scene.thickness / (scene.width + scene.thickness)

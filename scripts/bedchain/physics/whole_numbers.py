@@ -1,12 +1,12 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Ratios of numbers as they stand in a file, exact; multiples and primes."""
+"""Exact ratios of decimal numbers, multiples, and primes."""
 
 import math
 from fractions import Fraction
 
 
 def ratio(length: float, unit: float) -> Fraction:
-    """``length / unit``, exact for numbers as they are written in a file (0.025 / 2e-5 is 1250)."""
+    """``length / unit`` of the decimal numbers, exact (0.025 / 2e-5 is 1250)."""
     return Fraction(repr(length)) / Fraction(repr(unit))
 
 
@@ -17,12 +17,12 @@ def is_multiple(length: float, unit: float) -> bool:
 
 
 def nearest_multiple(length: float, unit: float) -> float:
-    """The multiple of `unit` nearest to `length`, at least one `unit`."""
+    """Multiple of `unit` nearest to `length`, at least `unit`."""
     return float(max(1, round(length / unit)) * Fraction(repr(unit)))
 
 
 def rounded_down(value: float) -> str:
-    """A positive value with three digits, never above it: what is advised must be allowed."""
+    """A positive value rounded down to three digits: a limit that is advised must be allowed."""
     digit = 10.0 ** (math.floor(math.log10(value)) - 2)
     return f"{math.floor(value / digit) * digit:.3g}"
 

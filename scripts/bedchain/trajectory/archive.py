@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""The archive of a simulated bed, cases/<case>/reference/: what the figures need of it, and its origin."""
+"""The archive of a simulated bed, cases/<case>/reference/: the names of its files, and its checks."""
 
 import hashlib
 import json
@@ -15,13 +15,13 @@ POSITIONS = "positions.xz"
 SERIES = "bed_series.csv"
 REPEATS = "repeats.csv"
 GAS = "gas.npz"
-# numbers that reach the solvers without a name of their own there
+# numbers that reach the solvers only through derived parameters
 DERIVED = ("gas.cell_size_m", "time.frame_interval_s")
 SIMULATE = "or simulate the bed: --config reference=simulate"
 
 
 def solver_keys(case: Case, schema: Schema) -> dict[str, Any]:
-    """Every key of a case that the particles and the gas depend on.
+    """Keys of a case that the simulation depends on.
 
     Parameters
     ----------
@@ -51,7 +51,7 @@ def file_hash(file: Path) -> str:
 
 
 def read_provenance(folder: Path) -> dict[str, Any]:
-    """What an archive says of itself.
+    """Provenance of an archive.
 
     Parameters
     ----------
@@ -61,7 +61,7 @@ def read_provenance(folder: Path) -> dict[str, Any]:
     Raises
     ------
     UserError
-        There is none, or it cannot be read.
+        It is missing or cannot be read.
     """
     try:
         found = json.loads((folder / PROVENANCE).read_text(encoding="utf-8"))
@@ -70,11 +70,11 @@ def read_provenance(folder: Path) -> dict[str, Any]:
         raise UserError(
             f"{folder}: no readable archive of a bed ({error!r}); fetch it again, {SIMULATE}"
         ) from error
-    return dict(found)
+    return dict(provenance)
 
 
 def check_archive(folder: Path, case: Case, schema: Schema) -> dict[str, Any]:
-    """Refuse an archive that is not of this case, or does not hold what the case asks for.
+    """Refuse an archive of another bed, or one that lacks frames or repeats that the case needs.
 
     Parameters
     ----------
@@ -88,29 +88,33 @@ def check_archive(folder: Path, case: Case, schema: Schema) -> dict[str, Any]:
     Returns
     -------
     dict
-        Its provenance.
+        Provenance of the archive.
 
     Raises
     ------
     UserError
-        With everything that does not fit.
+        The archive does not fit the case; the message lists every difference.
     """
-    found = read_provenance(folder)
-    wrong = [*_other_keys(found, case, schema), *_missing_times(found, case), *_uneven_lines(found, case)]
+    provenance = read_provenance(folder)
+    wrong = [
+        *_other_keys(provenance, case, schema),
+        *_missing_times(provenance, case),
+        *_uneven_lines(provenance, case),
+    ]
     if wrong:
         lines = "\n".join(f"  {line}" for line in wrong)
         raise UserError(f"{folder} does not serve this case:\n{lines}\nchange the case, {SIMULATE}")
-    return found
+    return provenance
 
 
-def _other_keys(found: dict[str, Any], case: Case, schema: Schema) -> list[str]:
-    archived, parts = found["solver_keys"], schema_keys(schema)
+def _other_keys(provenance: dict[str, Any], case: Case, schema: Schema) -> list[str]:
+    archived, parts = provenance["solver_keys"], schema_keys(schema)
     wrong = [
         f"{key} is {case_value(case, key)!r} and was {value!r} in the simulation: it is another bed"
         for key, value in archived.items()
         if case_value(case, key) != value
     ]
-    # a key that is younger than the archive stands for what was always so, by its default
+    # the default of a key that is newer than the archive is what the solvers did before it
     wrong += [
         f"{key} is {value!r}; the archive is older than this key, and has its default"
         for key, value in solver_keys(case, schema).items()
@@ -125,8 +129,8 @@ def _default(part: Schema, case: Case) -> Any:
     return part.get("default")
 
 
-def _missing_times(found: dict[str, Any], case: Case) -> list[str]:
-    start, end = found["start_s"], found["end_s"]
+def _missing_times(provenance: dict[str, Any], case: Case) -> list[str]:
+    start, end = provenance["start_s"], provenance["end_s"]
     wrong = [
         f"{name}.{edge} is {case[name][edge]:g} s, the archive holds {start:g} to {end:g} s"
         for name in ("learning", "comparison")
@@ -134,18 +138,16 @@ def _missing_times(found: dict[str, Any], case: Case) -> list[str]:
         if not start <= case[name][edge] <= end
     ]
     interval = case["time"]["frame_interval_s"]
-    frames = ratio(end, interval) - ratio(start, interval) + ratio(found["history_s"], interval) + 1
-    if found["n_frames"] != frames:
-        wrong.append(f"it holds {found['n_frames']} frames of {frames}: the simulation was not finished")
-    if found["repeats"] < case["comparison"]["repeats"]:
-        wrong.append(
-            f"comparison.repeats is {case['comparison']['repeats']}, the archive holds {found['repeats']}"
-        )
+    frames = ratio(end, interval) - ratio(start, interval) + ratio(provenance["history_s"], interval) + 1
+    if (n_frames := provenance["n_frames"]) != frames:
+        wrong.append(f"it holds {n_frames} frames of {frames}: the simulation was not finished")
+    if (archived := provenance["repeats"]) < (wanted := case["comparison"]["repeats"]):
+        wrong.append(f"comparison.repeats is {wanted}, the archive holds {archived}")
     return wrong
 
 
-def _uneven_lines(found: dict[str, Any], case: Case) -> list[str]:
-    level = found["level_m"]
+def _uneven_lines(provenance: dict[str, Any], case: Case) -> list[str]:
+    level = provenance["level_m"]
     bed, cells, mixing = case["bed"], case["cells"], case["mixing"]
     wrong = [
         f"cells.{name} {cells[name]}: {length:g} m in so many cells are no multiple of {level:g} m, to which "
@@ -162,7 +164,7 @@ def _uneven_lines(found: dict[str, Any], case: Case) -> list[str]:
 
 
 def check_files(folder: Path, provenance: dict[str, Any]) -> None:
-    """Refuse files that are not, byte by byte, those that were archived.
+    """Refuse files that differ by a byte from the archived ones.
 
     Parameters
     ----------
@@ -173,7 +175,7 @@ def check_files(folder: Path, provenance: dict[str, Any]) -> None:
     Raises
     ------
     UserError
-        Names the first file that is missing or was changed.
+        A file is missing or was changed; the first is named.
     """
     for name, expected in provenance["files"].items():
         file = folder / name

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""The cells of all particles in all frames on disk: written and read a chunk of frames at a time."""
+"""The cells of all particles in all frames on disk, written and read in chunks of frames."""
 
 import zipfile
 from pathlib import Path
@@ -8,11 +8,11 @@ from typing import NamedTuple
 import numpy as np
 
 from bedchain.errors import DataError, UserError
-from bedchain.files import complete, map_array, write_npy_header
+from bedchain.files import atomic_file, map_array, write_npy_header
 from bedchain.trajectory.chunks import read_frames
 from bedchain.trajectory.grid import Grid
 
-# about 16 MB of positions and velocities at a time
+# positions of a chunk: about 16 MB with the velocities
 CHUNK_VALUES = 1_000_000
 
 
@@ -22,7 +22,7 @@ class CellStore(NamedTuple):
     Attributes
     ----------
     cells : (n_frames, n_particles) ndarray of int32
-        Memory map: only what is used is read.
+        Memory map: only the frames in use are read.
     times_s : (n_frames,) ndarray
         Times of the frames [s].
     grid : Grid
@@ -34,7 +34,7 @@ class CellStore(NamedTuple):
 
 
 def write_cells(trajectory: np.ndarray, times_s: np.ndarray, grid: Grid, target: Path) -> None:
-    """Assign every particle of every frame to its cell, a chunk of frames at a time.
+    """Write the cell of every particle in every frame, in chunks of frames.
 
     Parameters
     ----------
@@ -49,8 +49,8 @@ def write_cells(trajectory: np.ndarray, times_s: np.ndarray, grid: Grid, target:
     n_frames, _, n_particles = trajectory.shape
     chunk = max(1, CHUNK_VALUES // n_particles)
     small = {"columns": grid.columns, "rows": grid.rows, "width_m": grid.width_m, "height_m": grid.height_m}
-    with complete(target) as temporary, zipfile.ZipFile(temporary, "w") as archive:
-        # what numpy.savez makes, without the whole array in memory
+    with atomic_file(target) as temporary, zipfile.ZipFile(temporary, "w") as archive:
+        # the file of numpy.savez, without the whole array in memory
         with archive.open("cells.npy", "w", force_zip64=True) as stream:
             write_npy_header(stream, (n_frames, n_particles), np.dtype(np.int32))
             for first in range(0, n_frames, chunk):
@@ -62,7 +62,7 @@ def write_cells(trajectory: np.ndarray, times_s: np.ndarray, grid: Grid, target:
 
 
 def open_cells(path: Path) -> CellStore:
-    """Cells written by :func:`write_cells`, as a memory map.
+    """Cells of `write_cells` as a memory map.
 
     Parameters
     ----------
@@ -76,7 +76,7 @@ def open_cells(path: Path) -> CellStore:
     Raises
     ------
     UserError
-        The file is not what assign_cells writes.
+        The file was not written by `write_cells`.
     """
     try:
         with np.load(path) as small:

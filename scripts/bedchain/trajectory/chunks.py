@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Frames in chunks, so that memory is bounded whatever the length of the trajectory."""
+"""Chunks of frames: the memory in use does not grow with the length of a trajectory."""
 
 from collections.abc import Iterator, Sequence
 
@@ -8,7 +8,7 @@ from numpy.typing import NDArray
 
 from bedchain.errors import DataError
 
-# Frames of a chunk are copied out of the memory map, so that its pages can go.
+# copied out of the memory map, whose pages can then be freed
 CHUNK_BYTES = 64 * 2**20
 
 
@@ -19,7 +19,7 @@ def chunks(
     weights: NDArray[np.int64],
     shifts: Sequence[int],
 ) -> Iterator[tuple[list[NDArray[np.int32]], NDArray[np.int64]]]:
-    """Cells at the starts of steps and some frames later, a chunk of steps at a time.
+    """Cells at the starts of steps and some frames later, in chunks of steps.
 
     Parameters
     ----------
@@ -28,18 +28,18 @@ def chunks(
     n_cells : int
         Number of cells of the grid.
     starts : (n_starts,) int64 array
-        Rising frames at which steps start.
+        Frames at which steps start, ascending.
     weights : (n_starts,) int64 array
-        How many times each counts.
+        Number of times that each start counts [1].
     shifts : sequence of int
-        Frames after the start that are wanted, such as 0 and the lag.
+        Frames after the start to give, such as 0 and the lag.
 
     Yields
     ------
     parts : list of (n, n_particles) arrays
-        Cells at n starts, one array a shift.
+        Cells after n starts, an array for each shift.
     weights : (n,) int64 array
-        Theirs.
+        Weights of these starts.
 
     Raises
     ------
@@ -63,9 +63,9 @@ def chunks(
 
 
 def read_frames(array: NDArray[np.int32], low: int, high: int) -> NDArray[np.int32]:
-    """Frames ``low`` to ``high``; of a memory map a copy, through a map of its own that is closed again.
+    """Frames ``low`` to ``high``; of a memory map a copy, through a second map that is then closed.
 
-    The pages of a map stay in the memory of the process for as long as the map is open.
+    The pages of a map stay in the memory of the process until it is closed.
     """
     if not isinstance(array, np.memmap) or array.filename is None or not array.flags.c_contiguous:
         return array[low:high]

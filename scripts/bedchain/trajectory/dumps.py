@@ -1,11 +1,12 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Read one frame of particles from a LIGGGHTS dump, native binary or text, and check it.
+"""Frames of particles from LIGGGHTS dumps, native binary or text, with checks.
 
 The binary form (``dump ... custom ... *.bin``) is a header and, for each MPI rank, a count and the values:
 i64 step, i64 particles, i32 triclinic, 6 i32 boundary flags, 6 f64 box, i32 columns, i32 chunks; then per
-chunk an i32 count of doubles and that many f64. It names no columns: those come from the run's manifest.
+chunk an i32 count of doubles and that many f64. The names of the columns come from the run's manifest.
 """
 
+from io import BytesIO
 from pathlib import Path
 from typing import NamedTuple
 
@@ -33,7 +34,7 @@ MOST_COLUMNS = 1000
 
 
 class Dump(NamedTuple):
-    """One frame as it stands in the file, in the file's order of particles.
+    """A frame as in the file, in the file's order of particles.
 
     Attributes
     ----------
@@ -42,7 +43,7 @@ class Dump(NamedTuple):
     box : (3, 2) ndarray
         Lower and upper bound of the box in x, y and z [m].
     values : (n_particles, n_columns) ndarray
-        One row a particle, in the columns of the dump command, SI units.
+        A row for each particle, in the columns of the dump command, SI units.
     """
 
     step: int
@@ -51,14 +52,14 @@ class Dump(NamedTuple):
 
 
 def read_dump(path: Path, columns: list[str]) -> Dump:
-    """Read a dump of either form, told apart by its first bytes.
+    """Dump from a file of either form; the first bytes decide which.
 
     Parameters
     ----------
     path : Path
-        A file written by LIGGGHTS ``dump custom``, one frame a file.
+        A file of a single frame, written by LIGGGHTS ``dump custom``.
     columns : list of str
-        The columns that are expected, in order.
+        Expected columns, in order.
 
     Returns
     -------
@@ -125,20 +126,20 @@ def _parse_text(content: bytes, path: Path, columns: list[str]) -> Dump:
         raise UserError(f"{path} is no LIGGGHTS text dump of one frame: its ITEM lines are not in place")
     if header[8].split()[2:] != columns:
         raise UserError(f"{path} has the columns {header[8][12:]}, expected {' '.join(columns)}")
+    body = lines[TEXT_HEADER_LINES]
     try:
-        step, number = int(header[1]), int(header[3])
-        box = np.array([line.split() for line in header[5:8]], float)
-        flat = np.array(lines[TEXT_HEADER_LINES].split(), float)
+        step, number, rows = int(header[1]), int(header[3]), body.count(b"\n")
+        # a last line without its end may have lost digits
+        if rows != number or not content.endswith(b"\n"):
+            raise UserError(f"{path} is cut off: {rows} of {number} particles are there")
+        values = np.loadtxt(BytesIO(body), comments=None, ndmin=2).reshape(number, len(columns))
+        return Dump(step, np.loadtxt(header[5:8]), values)
     except ValueError as error:
-        raise UserError(f"{path} holds something that is not a number ({error})") from error
-    # a last line without its end may have lost digits that nobody would miss
-    if flat.size != number * len(columns) or not content.endswith(b"\n"):
-        raise UserError(f"{path} is cut off: {flat.size // len(columns)} of {number} particles are there")
-    return Dump(step, box, flat.reshape(number, len(columns)))
+        raise UserError(f"{path} is no table of numbers ({error})") from error
 
 
 def frame_of(dump: Dump, columns: list[str], ids: np.ndarray | None, bounds: dict[str, float]) -> np.ndarray:
-    """Columns of a dump, particles sorted by id, after every check that can be made on one frame.
+    """Columns of a dump with particles sorted by id, after all checks of a single frame.
 
     Parameters
     ----------
@@ -146,14 +147,14 @@ def frame_of(dump: Dump, columns: list[str], ids: np.ndarray | None, bounds: dic
     columns : list of str
         Names of the dump's columns, ``id`` among them.
     ids : (n_particles,) ndarray of int64 or None
-        The ids that must be there, ascending; None: any set without doubles.
+        Expected ids, ascending; None accepts any set without doubles.
     bounds : dict of str to float
         Upper bound of a position column, the lower bound being 0, e.g. ``{"x": 0.27, "z": 1.05}`` [m].
 
     Returns
     -------
     (n_columns, n_particles) ndarray
-        Row order as in ``columns``.
+        Rows in the order of ``columns``.
 
     Raises
     ------
@@ -161,11 +162,12 @@ def frame_of(dump: Dump, columns: list[str], ids: np.ndarray | None, bounds: dic
         A value is not finite, an id is missing, doubled or unknown, or a particle is outside the bed.
     """
     values = dump.values.T
-    found = values[columns.index("id")]
+    dump_ids = values[columns.index("id")]
     if not np.isfinite(values).all():
         column, particle = np.argwhere(~np.isfinite(values))[0]
-        raise UserError(f"{columns[column]} of particle {found[particle]:.0f} is {values[column, particle]}")
-    order = np.argsort(found, kind="stable")
+        name, value = columns[column], values[column, particle]
+        raise UserError(f"{name} of particle {dump_ids[particle]:.0f} is {value}")
+    order = np.argsort(dump_ids, kind="stable")
     frame = values[:, order]
     _check_ids(frame[columns.index("id")], ids)
     for name, upper in bounds.items():
@@ -173,14 +175,14 @@ def frame_of(dump: Dump, columns: list[str], ids: np.ndarray | None, bounds: dic
     return frame
 
 
-def _check_ids(found: np.ndarray, ids: np.ndarray | None) -> None:
-    """Refuse doubled ids and, where ``ids`` is given, missing and unknown ones (``found`` is ascending)."""
-    if ids is not None and np.array_equal(found, ids):
+def _check_ids(ids: np.ndarray, expected: np.ndarray | None) -> None:
+    """Refuse doubled ids among ascending ones and, where ``expected`` is given, missing and unknown ones."""
+    if expected is not None and np.array_equal(ids, expected):
         return
-    problems = [("doubled", found[1:][np.diff(found) == 0]), ("not a whole number", found[found % 1 != 0])]
-    if ids is not None:
-        problems += [("missing", np.setdiff1d(ids, found)), ("unknown", np.setdiff1d(found, ids))]
-    text = "; ".join(f"{what}: id {_some(which)}" for what, which in problems if which.size)
+    problems = [("doubled", ids[1:][np.diff(ids) == 0]), ("not a whole number", ids[ids % 1 != 0])]
+    if expected is not None:
+        problems += [("missing", np.setdiff1d(expected, ids)), ("unknown", np.setdiff1d(ids, expected))]
+    text = "; ".join(f"{problem}: id {listed(wrong)}" for problem, wrong in problems if wrong.size)
     if text:
         raise UserError(text)
 
@@ -195,11 +197,11 @@ def _check_bounds(position: np.ndarray, ids: np.ndarray, name: str, upper: float
         beyond = max(worst - upper, -worst)
         raise UserError(
             f"{outside.sum()} particles are outside the bed, 0 to {upper:g} m in {name} "
-            f"(id {_some(ids[outside])}; the farthest by {beyond:.3g} m)"
+            f"(id {listed(ids[outside])}; the farthest by {beyond:.3g} m)"
         )
 
 
-def _some(ids: np.ndarray) -> str:
-    """First few ids as text."""
+def listed(ids: np.ndarray) -> str:
+    """The first few ids, and the number of the others, as text."""
     text = ", ".join(f"{number:.10g}" for number in ids[:IDS_SHOWN].tolist())
     return text + (f" and {ids.size - IDS_SHOWN} more" if ids.size > IDS_SHOWN else "")

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Consecutive frames of the same particles: what a chain learns from and starts from."""
+"""Consecutive frames of the same particles, from which chains are learned and started; windows and lags."""
 
 from dataclasses import dataclass
 from typing import NamedTuple
@@ -9,25 +9,25 @@ from numpy.typing import NDArray
 
 from bedchain.errors import DataError
 
-# Times come from step numbers times dt, printed with few digits: what they may differ from an even spacing,
-# as a share of the frame interval.
+# Deviation from an even spacing, as a share of the frame interval: times are step numbers times dt, printed
+# with few digits.
 TIME_TOLERANCE = 1e-3
 
 
 @dataclass(frozen=True)
 class Frames:
-    """A stretch of frames, one particle in one place of the arrays throughout.
+    """Consecutive frames; a particle has the same index in all of them.
 
     Parameters
     ----------
     times_s : (n_frames,) array
         Evenly spaced times [s].
     x_m, z_m : (n_frames, n_particles) array
-        Positions [m]; memory maps are welcome.
+        Positions [m]; may be memory maps.
     cells : (n_frames, n_particles) int32 array
-        Cell of each particle on the grid in use.
+        Cell of each particle on a grid.
     vx_m_s, vz_m_s : (n_frames, n_particles) array, optional
-        Velocities [m/s], for models that use them.
+        Velocities [m/s], where models use them.
     """
 
     times_s: NDArray[np.float64]
@@ -88,7 +88,7 @@ def check_times(times_s: NDArray[np.float64]) -> None:
     Raises
     ------
     DataError
-        Names the first pair of frames that are not one interval apart.
+        Two frames are not one interval apart; the first pair is named.
     """
     times = np.asarray(times_s, dtype=np.float64)
     if times.size == 0:
@@ -103,15 +103,15 @@ def check_times(times_s: NDArray[np.float64]) -> None:
         :1
     ]:
         gap = gaps[frame]
-        what = "out of order or doubled" if not gap > 0 else "missing" if gap > interval else "too close"
+        fault = "out of order or doubled" if not gap > 0 else "missing" if gap > interval else "too close"
         raise DataError(
-            f"frames {what}: frame {frame} is at {times[frame]:g} s and frame {frame + 1} at "
+            f"frames {fault}: frame {frame} is at {times[frame]:g} s and frame {frame + 1} at "
             f"{times[frame + 1]:g} s, {interval:g} s apart expected; write the frames again"
         )
 
 
 def window(times_s: NDArray[np.float64], start_s: float, end_s: float) -> slice:
-    """Frames from start to end, both included.
+    """Slice of the frames from start to end, both included.
 
     Parameters
     ----------

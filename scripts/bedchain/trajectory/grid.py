@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""The grid of cells laid over the bed, numbered from the bottom left, row by row."""
+"""The grid of cells over the bed, numbered from the bottom left, row by row."""
 
 from dataclasses import dataclass
 from typing import Any
@@ -75,7 +75,7 @@ class Grid:
         x_m, z_m : (n_particles,) or (n_frames, n_particles) array
             Positions [m].
         first_frame : int
-            Number of the first frame given, for the error message.
+            Number of the first frame, for the error message.
 
         Returns
         -------
@@ -85,13 +85,13 @@ class Grid:
         Raises
         ------
         DataError
-            A position is not finite or lies outside the bed: which particle, in which frame, by how much.
+            A position is not finite or outside the bed; particle, frame and distance are named.
         """
         x, z = np.asarray(x_m), np.asarray(z_m)
         if x.shape != z.shape:
             raise DataError(f"{x.shape} positions along x but {z.shape} along z")
         self._check_inside(x, z, first_frame)
-        # In float64: a float32 quotient would move particles over edges that they have not reached.
+        # in float64: the quotient in float32 would put particles across edges that they have not reached
         column = np.multiply(x, 1.0 / self.cell_width_m, dtype=np.float64).astype(np.int32)
         row = np.multiply(z, 1.0 / self.cell_height_m, dtype=np.float64).astype(np.int32)
         np.minimum(column, self.columns - 1, out=column)
@@ -105,28 +105,28 @@ class Grid:
             limit = max(top, float(np.asarray(top, dtype=values.dtype)))  # the wall itself, as stored
             if values.min() >= 0 and values.max() <= limit:
                 continue
-            where = tuple(int(i) for i in np.argwhere(~((values >= 0) & (values <= limit)))[0])
-            value = float(values[where])
+            index = tuple(int(i) for i in np.argwhere(~((values >= 0) & (values <= limit)))[0])
+            value = float(values[index])
             excess = -value if value < 0 else value - top
-            frame = first_frame + (where[0] if len(where) > 1 else 0)
+            frame = first_frame + (index[0] if len(index) > 1 else 0)
             raise DataError(
-                f"particle {where[-1]} (counted from 0) in frame {frame} is at {name} = {value:g} m, "
+                f"particle {index[-1]} (counted from 0) in frame {frame} is at {name} = {value:g} m, "
                 f"{excess:g} m outside the bed (0 to {top:g} m): check the bed's size in the case file, "
                 "or whether particles leave the bed"
             )
 
     def check_resolution(self, resolution_m: float) -> None:
-        """Refuse cells finer than what the data resolve.
+        """Refuse cells finer than the resolution of the data.
 
         Parameters
         ----------
         resolution_m : float
-            Finest meaningful length of the data, at least a particle diameter [m].
+            Smallest length that the data resolve, at least a particle diameter [m].
 
         Raises
         ------
         DataError
-            A cell is narrower or lower than that (a part in 10^6 is allowed for round-off).
+            A cell is narrower or lower (10^-6 of it is allowed for round-off).
         """
         for name, size, top, count in (
             ("columns", self.cell_width_m, self.width_m, self.columns),

@@ -1,9 +1,9 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Positions of many particles over many frames in few bytes: whole levels of a fraction of a millimetre.
+"""Compressed positions of many particles over many frames, rounded to levels of a fraction of a millimetre.
 
-A particle goes on nearly as it went, so the second difference of its levels over time is small: as bytes, the
-low ones of a frame before the high ones, which are nearly all zero, xz makes of it about one byte for both
-coordinates of a particle in a frame.
+Velocities change little between frames, so the second differences of the levels over time are small. In each
+frame their low bytes stand before the high bytes, which are nearly all zero; xz then needs about one byte for
+both coordinates of a particle.
 """
 
 import lzma
@@ -14,9 +14,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from bedchain.errors import UserError
-from bedchain.files import complete
+from bedchain.files import atomic_file
 
-# no context between bytes: neighbours in the file are particles that know nothing of each other
+# no context between bytes: neighbours in the file are unrelated particles
 FILTERS = [{"id": lzma.FILTER_LZMA2, "preset": 6, "lc": 0, "lp": 0, "pb": 0}]
 Levels = NDArray[np.uint16]
 
@@ -50,25 +50,25 @@ def levels_of(positions_m: NDArray[np.floating], level_m: float) -> Levels:
 
 
 def middle_of(levels: Levels, level_m: float) -> NDArray[np.float32]:
-    """Middle of the levels [m]: on the right side of every line that lies between two levels."""
+    """Middle of the levels [m], never on a line between two levels."""
     return ((levels + 0.5) * level_m).astype(np.float32)
 
 
 def write_levels(frames: Iterable[Levels], target: Path) -> None:
-    """Pack frames one after the other.
+    """Write compressed frames.
 
     Parameters
     ----------
     frames : iterable of (2, n_particles) uint16 array
         Levels of x and z.
     target : Path
-        File to make.
+        File to write.
     """
     before: Levels | np.uint16 = np.uint16(0)
     last: Levels | np.uint16 = np.uint16(0)
-    with complete(target) as temporary, lzma.open(temporary, "wb", filters=FILTERS) as stream:
+    with atomic_file(target) as temporary, lzma.open(temporary, "wb", filters=FILTERS) as stream:
         for at, levels in enumerate(frames):
-            # uint16 wraps around, here and in read_levels alike
+            # uint16 wraps around, as in read_levels
             change = (levels - last - (last - before if at > 1 else np.uint16(0))).view(np.int16)
             folded = ((change << 1) ^ (change >> 15)).view(np.uint16)
             for byte in (folded & 0xFF, folded >> 8):
@@ -83,7 +83,7 @@ def read_levels(source: Path, n_frames: int, number: int) -> Iterator[Levels]:
     ----------
     source : Path
     n_frames, number : int
-        Frames, and particles in each.
+        Frames, and particles in a frame [1].
 
     Yields
     ------
@@ -92,7 +92,7 @@ def read_levels(source: Path, n_frames: int, number: int) -> Iterator[Levels]:
     Raises
     ------
     UserError
-        The file ends early or goes on.
+        The file holds fewer or more frames.
     """
     before = last = np.zeros((2, number), np.uint16)
     with lzma.open(source, "rb") as stream:
@@ -116,12 +116,12 @@ def read_levels(source: Path, n_frames: int, number: int) -> Iterator[Levels]:
 def with_velocities(
     frames: Iterable[Levels], level_m: float, interval_s: float
 ) -> Iterator[NDArray[np.float32]]:
-    """Frames as the trajectory has them: positions, and velocities from the frames before and after.
+    """Frames in the form of the trajectory: positions, and velocities from the frames before and after.
 
     Parameters
     ----------
     frames : iterable of (2, n_particles) uint16 array
-        Two at least.
+        At least two.
     level_m : float
         Height of a level [m].
     interval_s : float
@@ -130,7 +130,7 @@ def with_velocities(
     Yields
     ------
     (4, n_particles) float32 array
-        x, z [m], vx, vz [m/s]; central differences, at the ends those to the neighbour.
+        x, z [m], vx, vz [m/s]; velocities by central differences, at the ends by one-sided ones.
     """
     before: NDArray[np.float32] | None = None
     now: NDArray[np.float32] | None = None

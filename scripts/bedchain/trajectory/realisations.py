@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Realisations of one bed, the run learned from and its repeats: their frames on any grid of cells."""
+"""Realisations of a bed, the main run and its repeats, and their frames on any grid of cells."""
 
 import logging
 from dataclasses import dataclass, replace
@@ -16,17 +16,17 @@ from bedchain.trajectory.store import BedFiles, open_trajectory
 
 LOG = logging.getLogger(__name__)
 
-# lags that lead up to a start: more than the states of any model look back
+# lags before a start: no state of a model looks back further
 HISTORY_LAGS = 4
-# frames before its start that a repeat takes from the run that it branches off from
+# frames of the main run that a repeat has as its past
 PAST_FRAMES = 64
-# positions of one state written twice differ by less, over the width of the bed
+# over the width of the bed: positions of the same state in two runs differ by less
 SAME_PLACE = 1e-6
 
 
 @dataclass(frozen=True)
 class Realisation:
-    """One simulated bed on disk.
+    """A simulated bed on disk.
 
     Parameters
     ----------
@@ -35,13 +35,13 @@ class Realisation:
     values : (n_frames, 4, n_particles) array
         Rows x, z [m], vx, vz [m/s]; a memory map.
     times_s : (n_frames,) array
-        [s].
+        Times of the frames [s].
     width_m, height_m : float
         Size of the bed [m].
     has_velocities : bool
-        Whether the last two rows hold numbers.
+        Whether the last two rows are velocities.
     past : (n_past, 4, n_particles) array, optional
-        Frames before the first one, where another run holds them.
+        Frames before the first one, from the main run.
     stored : CellStore, optional
         Cells of all frames on the grid of the case.
     """
@@ -89,28 +89,28 @@ class Realisation:
         ----------
         grid : Grid
         which : slice
-            Of the realisation's frames, both ends given.
+            Of the realisation's frames, with both ends.
 
         Returns
         -------
         Frames
-            Without velocities where the realisation has none: models take differences of positions then.
+            Without velocities where the realisation has none; models then take differences of positions.
         """
         cells = self._cells(grid, self.values[which], which.start)
         return self._frames(self.times_s[which], self.values[which], cells)
 
     def leading_to(self, grid: Grid, frame: int, lag: int, lags: int = HISTORY_LAGS) -> Frames:
-        """A frame and those before it that a chain may look back to, as far as there are any.
+        """A frame and those before it that a chain may look back to, as far as they exist.
 
         Parameters
         ----------
         grid : Grid
         frame : int
-            The last frame given.
+            Last frame.
         lag : int
             Frames in a step of the chain.
         lags : int
-            Steps that lead up to the frame.
+            Steps before the frame.
 
         Returns
         -------
@@ -142,7 +142,7 @@ class Realisation:
 
 
 def cells_of(grid: Grid, values: NDArray[np.floating], first: int = 0) -> NDArray[np.int32]:
-    """Cells of all particles, a frame at a time: all at once would take several times the memory.
+    """Cells of all particles, in a loop over frames, which saves memory.
 
     Parameters
     ----------
@@ -160,7 +160,7 @@ def cells_of(grid: Grid, values: NDArray[np.floating], first: int = 0) -> NDArra
 
 
 def open_realisation(name: str, trajectory: Path, metadata: Path, cells: Path | None = None) -> Realisation:
-    """Open a run's trajectory and check its times.
+    """A realisation from its trajectory, with checked times.
 
     Parameters
     ----------
@@ -178,7 +178,7 @@ def open_realisation(name: str, trajectory: Path, metadata: Path, cells: Path | 
     Raises
     ------
     UserError
-        The two files do not fit each other, or frames are missing or out of order.
+        A file is missing, the files do not fit, or frames are missing or out of order.
     """
     if not metadata.exists():
         raise UserError(f"{name}: {metadata} is missing beside its trajectory; write both again")
@@ -204,14 +204,14 @@ def open_bed(bed: BedFiles) -> Realisation:
 
 
 def open_repeats(paths: list[Path], main: Realisation) -> list[Realisation]:
-    """Open repeats of a run, and refuse what is no repeat of it.
+    """Repeats of a run, each checked to be of the same bed.
 
     Parameters
     ----------
     paths : list of Path
         ``repeats/<N>/trajectory.npy``, each with its ``trajectory.json``.
     main : Realisation
-        The run that they repeat.
+        The run that was repeated.
 
     Returns
     -------
@@ -220,7 +220,7 @@ def open_repeats(paths: list[Path], main: Realisation) -> list[Realisation]:
     Raises
     ------
     UserError
-        Another number of particles, size of the bed or frame interval.
+        A repeat has another number of particles, size of the bed or frame interval.
     """
     runs = [open_realisation(f"repeat {path.parent.name}", path, path.with_suffix(".json")) for path in paths]
     for run, path in zip(runs, paths, strict=True):
@@ -230,28 +230,28 @@ def open_repeats(paths: list[Path], main: Realisation) -> list[Realisation]:
             "metres of height": (run.height_m, main.height_m),
             "seconds between frames": (run.interval_s, main.interval_s),
         }
-        for what, (found, wanted) in pairs.items():
-            if abs(found - wanted) > TIME_TOLERANCE * wanted:
+        for quantity, (number, wanted) in pairs.items():
+            if abs(number - wanted) > TIME_TOLERANCE * wanted:
                 raise UserError(
-                    f"{path} is no repeat of the bed: {found:g} {what}, {wanted:g} expected; "
+                    f"{path} is no repeat of the bed: {number:g} {quantity}, {wanted:g} expected; "
                     "remove its folder or simulate it with the case's numbers"
                 )
     return [_with_past(run, main) for run in runs]
 
 
 def _with_past(run: Realisation, main: Realisation) -> Realisation:
-    """A repeat that branches off from a frame of the main run, with what came before in that run."""
+    """A repeat, with the frames of the main run before the frame that it branches off from."""
     frame = round((run.times_s[0] - main.times_s[0]) / main.interval_s)
     if not 0 < frame < len(main.times_s):
         return run
-    apart = np.abs(run.values[0, :2] - main.values[frame, :2]).max()
-    if apart > SAME_PLACE * run.width_m:
+    distance = np.abs(run.values[0, :2] - main.values[frame, :2]).max()
+    if distance > SAME_PLACE * run.width_m:
         return run
     return replace(run, past=main.values[max(0, frame - PAST_FRAMES) : frame])
 
 
 def part_of(run: Realisation, start_s: float, end_s: float) -> slice:
-    """Frames of a window, cut where the run ends early.
+    """Slice of a window, shorter where the run ends early.
 
     Parameters
     ----------
@@ -266,7 +266,7 @@ def part_of(run: Realisation, start_s: float, end_s: float) -> slice:
     Raises
     ------
     UserError
-        Less than half of the window is there, or an end is not the time of a frame.
+        The run holds less than half of the window, or an end is not the time of a frame.
     """
     last_s = float(run.times_s[-1])
     if last_s >= end_s - TIME_TOLERANCE * run.interval_s:

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""One columnar trajectory out of the frames that a run of the DEM left behind."""
+"""The trajectory: one array of all frames of a DEM run, and its metadata."""
 
 import json
 import logging
@@ -13,13 +13,13 @@ import numpy as np
 from tqdm import tqdm
 
 from bedchain.errors import UserError
-from bedchain.files import complete, write_npy_header, write_text
-from bedchain.trajectory.dumps import frame_of, read_dump
+from bedchain.files import atomic_file, write_npy_header, write_text
+from bedchain.trajectory.dumps import frame_of, listed, read_dump
 
 LOG = logging.getLogger(__name__)
 
 STORED = ("x", "z", "vx", "vz")
-# frames are multiples of the DEM step; their times differ from the grid by round-off only
+# share of an interval: frames are multiples of the DEM step, their times differ by round-off only
 TIME_TOLERANCE = 1e-6
 DISK_RESERVE_BYTES = 50_000_000
 
@@ -46,12 +46,12 @@ class BedFiles:
 
 
 def read_manifest(path: Path) -> dict[str, Any]:
-    """Manifest of a DEM run (dem.json), with its frames checked for order and regular spacing.
+    """Manifest of a DEM run, its frames checked for order and even spacing.
 
     Parameters
     ----------
     path : Path
-        ``dem.json``; the frames' files are given relative to its folder.
+        ``dem.json``; the files of the frames are relative to its folder.
 
     Returns
     -------
@@ -87,21 +87,21 @@ def read_manifest(path: Path) -> dict[str, Any]:
 def write_trajectory(
     dem: Path, trajectory: Path, metadata: Path, width_m: float, height_m: float, progress: bool = True
 ) -> dict[str, Any]:
-    """Check every frame of a run and write them as one array, one frame in memory at a time.
+    """Check all frames of a run and write them as one array, with one frame in memory at a time.
 
     Parameters
     ----------
     dem : Path
-        The run's manifest, ``dem.json``, in the folder that the frames' files are relative to.
+        The run's manifest, ``dem.json``; the files of the frames are relative to its folder.
     trajectory : Path
-        Gets float32 (n_frames, 4, n_particles): x, z [m], vx, vz [m/s], particles by id; NaN for velocities
-        that the dumps lack.
+        Gets float32 (n_frames, 4, n_particles): x, z [m], vx, vz [m/s], particles by id; velocities are NaN
+        where the dumps have none.
     metadata : Path
         Gets `trajectory_metadata`.
     width_m, height_m : float
         Size of the bed [m].
     progress : bool
-        Show a bar with the time left on stderr.
+        Show a progress bar on stderr.
 
     Returns
     -------
@@ -111,8 +111,8 @@ def write_trajectory(
     Raises
     ------
     UserError
-        A frame is missing, cut off, or holds other particles than the first, or the dumps hold no positions;
-        nothing is written then.
+        A frame is missing, cut off, or holds other particles than the first, or the dumps have no positions;
+        nothing is written.
     """
     manifest = read_manifest(dem)
     frames, number = manifest["frames"], int(manifest["number"])
@@ -125,13 +125,13 @@ def write_trajectory(
             raise UserError(f"the dumps hold {' '.join(columns)}, x and z are needed; write them again")
         LOG.info("no %s in the dumps: models that need velocities take differences of positions", absent)
     # a plain stream: the pages of a memory map would stay in memory until the end
-    with complete(trajectory) as temporary, temporary.open("wb") as stream:
+    with atomic_file(trajectory) as temporary, temporary.open("wb") as stream:
         write_npy_header(stream, shape, np.dtype(np.float32))
         for index in tqdm(range(len(frames)), desc="parse_dumps", unit="frame", disable=not progress):
             frame = _read_frame(manifest, index, dem.parent, ids, bounds)
             ids = frame[columns.index("id")].astype(np.int64) if ids is None else ids
-            nothing = np.full(frame.shape[1], np.nan)
-            stored = [frame[columns.index(name)] if name in columns else nothing for name in STORED]
+            missing = np.full(frame.shape[1], np.nan)
+            stored = [frame[columns.index(name)] if name in columns else missing for name in STORED]
             stream.write(np.array(stored, np.float32).tobytes())
     assert ids is not None
     write_text(metadata, json.dumps(trajectory_metadata(manifest, ids, width_m, height_m)))
@@ -141,15 +141,15 @@ def write_trajectory(
 def _read_frame(
     manifest: dict[str, Any], index: int, folder: Path, ids: np.ndarray | None, bounds: dict[str, float]
 ) -> np.ndarray:
-    """One checked frame; its errors name the frame, the file and the segment to run again."""
+    """A checked frame; errors name the frame, the file and the segment to run again."""
     entry, columns = manifest["frames"][index], manifest["columns"]
     try:
         dump = read_dump(folder / entry["file"], columns)
         if dump.step != entry["step"]:
             raise UserError(f"its step is {dump.step}, {entry['step']} expected")
         if len(dump.values) != manifest["number"]:
-            found = np.unique(dump.values[:, columns.index("id")])
-            absent = "" if ids is None else f", missing: id {_listed(np.setdiff1d(ids, found))}"
+            present = dump.values[:, columns.index("id")]
+            absent = "" if ids is None else f", missing: id {listed(np.setdiff1d(ids, present))}"
             raise UserError(f"it holds {len(dump.values)} particles, {manifest['number']} expected{absent}")
         return frame_of(dump, columns, ids, bounds)
     except UserError as error:
@@ -160,7 +160,7 @@ def _read_frame(
 
 
 def remedy(file: str) -> str:
-    """What to do about a bad frame: which segment to run again."""
+    """Remedy for a bad frame: the segment to run again."""
     segment = re.search(r"segment_(\d+)", file)
     if segment is None:
         return "delete the run's folder and run again"
@@ -173,12 +173,14 @@ def remedy(file: str) -> str:
 def trajectory_metadata(
     manifest: dict[str, Any], ids: np.ndarray, width_m: float, height_m: float
 ) -> dict[str, Any]:
-    """What the array of numbers does not say: times, ids, rows, size of the bed.
+    """Metadata of a trajectory: times, ids, rows, size of the bed.
 
     Parameters
     ----------
     manifest : dict
+        Of `read_manifest`.
     ids : (n_particles,) ndarray of int64
+        Ascending.
     width_m, height_m : float
         Size of the bed [m].
 
@@ -213,7 +215,7 @@ def open_trajectory(path: Path, metadata_path: Path) -> tuple[np.ndarray, dict[s
     (n_frames, 4, n_particles) ndarray of float32
         Rows x, z [m], vx, vz [m/s].
     dict
-        See :func:`trajectory_metadata`.
+        As `trajectory_metadata`.
     """
     metadata = json.loads(metadata_path.read_text())
     store = np.load(path, mmap_mode="r")
@@ -223,14 +225,11 @@ def open_trajectory(path: Path, metadata_path: Path) -> tuple[np.ndarray, dict[s
     return store, metadata
 
 
-def _check_disk(target: Path, needed: int) -> None:
-    free = shutil.disk_usage(target.parent).free
-    if free < needed + DISK_RESERVE_BYTES:
+def _check_disk(target: Path, size: int) -> None:
+    needed, free = size + DISK_RESERVE_BYTES, shutil.disk_usage(target.parent).free
+    if free < needed:
+        needed_size, free_size = (tqdm.format_sizeof(number, "B") for number in (needed, free))
         raise UserError(
-            f"{target.parent}: {free / 1e6:.0f} MB free, {needed / 1e6:.0f} MB needed for {target.name}; "
+            f"{target.parent}: {free_size} free, {needed_size} needed for {target.name}; "
             "free disk space and run again"
         )
-
-
-def _listed(ids: np.ndarray) -> str:
-    return ", ".join(f"{number:.0f}" for number in ids[:5]) + (" ..." if ids.size > 5 else "")

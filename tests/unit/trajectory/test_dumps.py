@@ -75,6 +75,17 @@ def test_text_that_lost_only_its_last_digits_is_refused(tmp_path, table):
         read_dump(tmp_path / "a.txt", COLUMNS)
 
 
+@pytest.mark.parametrize("value", [b"0.1x", b"0.1 0.2", b""])
+def test_text_that_is_no_table_of_numbers_is_refused(tmp_path, table, value):
+    write_text_dump(tmp_path / "a.txt", 0, table, BOX)
+    content = (tmp_path / "a.txt").read_bytes().split(b"\n")
+    words = content[12].split()
+    content[12] = b" ".join([*words[:2], value, *words[3:]])
+    (tmp_path / "a.txt").write_bytes(b"\n".join(content))
+    with pytest.raises(UserError, match="no table of numbers"):
+        read_dump(tmp_path / "a.txt", COLUMNS)
+
+
 def test_bytes_after_the_last_particle_are_refused(tmp_path, table):
     write_binary_dump(tmp_path / "a.bin", 0, table, BOX)
     with (tmp_path / "a.bin").open("ab") as stream:

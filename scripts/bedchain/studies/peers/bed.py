@@ -16,7 +16,7 @@ from bedchain.dem.particle_files import write_particles
 from bedchain.dem.processes import run_deck, run_logged
 from bedchain.dem.segments import COLUMNS, RESTART, SETTLED, STAMP_DIGITS, input_stamp
 from bedchain.errors import UserError
-from bedchain.files import whole_folder
+from bedchain.files import atomic_folder
 from bedchain.trajectory.dumps import read_dump
 
 DECKS = Path("liggghts_inputs")
@@ -133,10 +133,10 @@ def fluidized_bed(case_file: Path, folder: Path, solver: Path, start_s: float) -
     settled = folder / f"{SETTLED}_{input_stamp([given, DECKS / 'in.settle', *includes], 1)}"
     moving = folder / f"{MOVING}_{input_stamp([given, DECKS / 'in.fluidize', *includes], 1, f'{start_s:g}')}"
     if not settled.exists():
-        with whole_folder(settled) as part:
+        with atomic_folder(settled) as part:
             _settle(bed, part)
     if not moving.exists():
-        with whole_folder(moving) as part:
+        with atomic_folder(moving) as part:
             np.save(part / START, _moving_particles(bed, settled, part, solver, start_s))
     return replace(bed, particles=np.load(moving / START))
 

@@ -13,7 +13,7 @@ from typing import Any
 
 from bedchain.dem.segments import input_stamp
 from bedchain.errors import UserError
-from bedchain.files import exclusive
+from bedchain.files import locked_folder
 from bedchain.studies.peers import bedfoam, dpmfoam, lammps, liggghts, yade
 from bedchain.studies.peers.bed import Bed, fluidized_bed
 from bedchain.studies.peers.peer import Outcome, Peer
@@ -176,7 +176,7 @@ def compare(
     if not solver.exists():
         raise UserError(f"there is no solver {solver}: run snakemake build_solver")
     found, runs = {}, []
-    with exclusive(folder):
+    with locked_folder(folder):
         for name in beds:
             say(f"{name}: the bed that all codes start from")
             bed = found[name] = prepare(name, folder, solver, start_s)

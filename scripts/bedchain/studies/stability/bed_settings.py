@@ -7,8 +7,8 @@ from dataclasses import replace
 from functools import partial
 from pathlib import Path
 
-from bedchain.case.checks import RAYLEIGH_SHARE_MAX
-from bedchain.case.scene_checks import GAS_CELL_MAX, OVERLAP_AT_REST_MAX
+from bedchain.case.bed_checks import OVERLAP_AT_REST_MAX, RAYLEIGH_SHARE_MAX
+from bedchain.case.gas_checks import GAS_CELL_MAX
 from bedchain.physics.packing import START_SPACING_DIAMETERS, settled_height
 from bedchain.physics.scene_numbers import contact_duration, grain_velocity, terminal_velocity
 from bedchain.studies.stability import theory

@@ -12,7 +12,8 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 
-from bedchain.case.checks import COURANT_MAX, RAYLEIGH_SHARE_MAX
+from bedchain.case.bed_checks import RAYLEIGH_SHARE_MAX
+from bedchain.case.gas_checks import COURANT_MAX
 from bedchain.figures.style import DOUBLE_COLUMN_IN, LINE_COLOUR, figure_style, save_figure
 from bedchain.files import write_csv
 from bedchain.physics.scene_numbers import contact_duration, gas_relaxation_time

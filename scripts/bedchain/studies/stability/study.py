@@ -16,7 +16,7 @@ import pandas as pd
 
 from bedchain.dem.segments import input_stamp
 from bedchain.errors import UserError
-from bedchain.files import exclusive
+from bedchain.files import locked_folder
 from bedchain.studies.records import remembered
 from bedchain.studies.stability.settings import Known, Setting
 from bedchain.studies.stability.verdict import CRASHED, FAULTS, HUNG, Verdict
@@ -137,7 +137,7 @@ def run_study(
     records = {item.name: record_file(folder, item, sources[item.group]) for item in settings}
     known: dict[str, dict[str, float]] = {}
     rows, spent, made = [], 0.0, 0
-    with exclusive(folder):
+    with locked_folder(folder):
         for place, setting in enumerate(settings):
             new = not records[setting.name].exists()
             verdict, wall_s = tried(setting, folder, records[setting.name], known, longest_s)

@@ -4,8 +4,8 @@
 import math
 from dataclasses import dataclass
 
-from bedchain.case.checks import COURANT_MAX, RAYLEIGH_SHARE_MAX
-from bedchain.case.scene_checks import ADDED_MASS_MAX, FREE_FALL_SHARE_MAX
+from bedchain.case.bed_checks import RAYLEIGH_SHARE_MAX
+from bedchain.case.gas_checks import ADDED_MASS_MAX, COURANT_MAX, FREE_FALL_SHARE_MAX
 from bedchain.physics.constants import GRAVITY_M_S2
 from bedchain.physics.contacts import contact_modulus, rayleigh_time, static_overlap
 from bedchain.physics.fluidization import DENSE_VOIDAGE

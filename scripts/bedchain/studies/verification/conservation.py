@@ -6,7 +6,7 @@ from pathlib import Path
 import numpy as np
 from scipy.spatial import cKDTree
 
-from bedchain.dem.lattices import loose
+from bedchain.dem.lattices import loose_lattice
 from bedchain.dem.small_cases import Setup, run_gas, run_particles
 from bedchain.studies.verification.laws import GRAVITY, Suspension, suspension
 from bedchain.studies.verification.plots import Curve, draw
@@ -28,7 +28,7 @@ def heap(folder: Path, **gas: float) -> Setup:
         "gas": gas,
         "time": {"frame_interval_s": FRAME},
     }
-    return Setup(folder, sections, loose(WIDTH, NUMBER, DIAMETER, np.random.default_rng(2)))
+    return Setup(folder, sections, loose_lattice(WIDTH, NUMBER, DIAMETER, np.random.default_rng(2)))
 
 
 def elastic_energy(x: np.ndarray, z: np.ndarray) -> float:

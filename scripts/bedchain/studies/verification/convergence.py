@@ -7,7 +7,7 @@ import numpy as np
 from scipy.integrate import cumulative_trapezoid
 from scipy.optimize import brentq
 
-from bedchain.dem.lattices import at_rest
+from bedchain.dem.lattices import spheres_at_rest
 from bedchain.dem.small_cases import Setup, run_gas
 from bedchain.studies.verification.laws import Suspension, ergun_gradient
 from bedchain.studies.verification.plots import Curve, draw
@@ -43,7 +43,7 @@ def graded_lattice() -> np.ndarray:
     total = below(HEIGHT)
     z = [brentq(lambda at, k=k: below(at) - (k + 0.5) / rows * total, 0, HEIGHT) for k in range(rows)]
     height, x = np.meshgrid(z, (np.arange(COLUMNS) + 0.5) * WIDTH / COLUMNS, indexing="ij")
-    return at_rest(x.ravel(), height.ravel(), DIAMETER)
+    return spheres_at_rest(x.ravel(), height.ravel(), DIAMETER)
 
 
 def exact_pressure(of: Suspension, z: np.ndarray, share: float) -> np.ndarray:

@@ -7,7 +7,7 @@ from typing import NamedTuple
 import numpy as np
 
 from bedchain.dem.gas_field import read_gas_field
-from bedchain.dem.lattices import at_rest, loose, rows_of_voidage
+from bedchain.dem.lattices import loose_lattice, rows_of_voidage, spheres_at_rest
 from bedchain.dem.small_cases import Setup, run_gas, run_particles
 from bedchain.studies.verification.laws import Suspension, ergun_gradient, suspension
 from bedchain.studies.verification.plots import Curve, draw
@@ -50,13 +50,13 @@ def random_bed(folder: Path, width: float, height: float, number: int, **contact
         "contact": contact,
         "time": {"frame_interval_s": HELD},
     }
-    return Setup(folder, sections, loose(width, number, DIAMETER, np.random.default_rng(1)))
+    return Setup(folder, sections, loose_lattice(width, number, DIAMETER, np.random.default_rng(1)))
 
 
 def settled(work: Path, name: str, heap: Setup, numbers: dict[str, float]) -> Setup:
     """The same spheres after the fall, at rest, as the start of a case of its own."""
     last = run_particles(heap, SETTLE)[-1]
-    return Setup(work / name, heap.sections, at_rest(last[:, 1], last[:, 2], DIAMETER), numbers)
+    return Setup(work / name, heap.sections, spheres_at_rest(last[:, 1], last[:, 2], DIAMETER), numbers)
 
 
 def rows_of(case: Path, name: str) -> np.ndarray:

@@ -1,0 +1,188 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Tables of the studies for the README files: trade-off, scores, validation, verification and others.
+
+Each function takes the folder of the results and gives texts as they are shown.
+"""
+
+from pathlib import Path
+
+import numpy as np
+import pandas as pd
+import yaml
+
+from bedchain.studies.readme.case_tables import by_cell_and_lag, number
+
+CELLS_AND_LAGS, WINDOWS = "cells and lag", ("window", "window start")
+# columns of scores.csv that tell chains apart
+CHAIN = ["model", "cell_m", "lag_s", "options"]
+
+
+def presets(results: Path) -> pd.DataFrame:
+    """The presets that the trade-off study takes, and the case's own chain."""
+    table = _chains(results)
+    picked = table[table["preset"].notna()].copy()
+    rows = [row | {"name": name} for row in picked.to_dict("records") for name in row["preset"].split()]
+    order = list(yaml.safe_load((results / "presets.yaml").read_text(encoding="utf-8")))
+    rows.sort(key=lambda row: order.index(row["name"]))
+    own = table[table["tracers"] > 0].iloc[:1]
+    keys = ["model", "estimator", "cell_width_m", "cell_height_m", "lag_s"]
+    same = table.merge(own[keys], on=keys)
+    rows += [row | {"name": "the case's own"} for row in same[same["tracers"] == 0].to_dict("records")[:1]]
+    return pd.DataFrame(
+        {
+            "preset": row["name"],
+            "chain": f"{row['model']}, {_cell(row)}, {row['lag_s']:g} s",
+            "cost": f"{number(1e3 * row['cost_s'])} ms",
+            "validation error": number(row["validation_error_1"]),
+            "its 95 % interval": " to ".join(
+                number(row[f"validation_ci_{end}_1"]) for end in ("low", "high")
+            ),
+            "mixing curves, noise floors": number(row["mixing_floors_1"]),
+            "density, noise floors": number(row["density_floors_1"]),
+        }
+        for row in rows
+    )
+
+
+def mixing_by_cell_and_lag(results: Path) -> pd.DataFrame:
+    """Error of the static chain's mixing curves over all realisations, in noise floors."""
+    return _by_cell_and_lag(results, "mixing_floors_1")
+
+
+def density_by_cell_and_lag(results: Path) -> pd.DataFrame:
+    """Error of the static chain's density, in noise floors."""
+    return _by_cell_and_lag(results, "density_floors_1")
+
+
+def learning_windows(results: Path) -> pd.DataFrame:
+    """Errors of the case's own chain learned from parts of the learning window."""
+    table = _chains(results)
+    parts = table[table["axis"].isin(WINDOWS)].sort_values(["learning_start_s", "learning_end_s"])
+    spans = zip(parts["learning_start_s"], parts["learning_end_s"], strict=True)
+    return pd.DataFrame(
+        {
+            "learned from": [f"{start:g} to {end:g} s" for start, end in spans],
+            "mixing curves, noise floors": parts["mixing_floors_1"].map(number),
+            "density, noise floors": parts["density_floors_1"].map(number),
+        }
+    )
+
+
+def variants(results: Path) -> pd.DataFrame:
+    """What each choice of the simulation changes at most, and its cost over that of the bed itself."""
+    table = pd.read_csv(results / "figures" / "fig_tradeoff_dem.csv")
+    observables = [name for name in table if name.endswith("_floors_1") and name != "largest_floors_1"]
+    sizes = table[observables].abs().fillna(0)
+    strongest = sizes.idxmax(axis=1).str.removesuffix("_floors_1").str.replace("_", " ")
+    return pd.DataFrame(
+        {
+            "choice": table["changed"].fillna(table["variant"]),
+            "largest change, noise floors": table["largest_floors_1"].map(number),
+            "of": strongest,
+            "mixing curves, noise floors": table["mixing_floors_1"].map(number),
+            "cost": table["cost_over_base_1"].map(number),
+        }
+    )
+
+
+def scores(results: Path) -> pd.DataFrame:
+    """Errors of the chosen chains in the repeats, which nothing was learned from, and the DEM's spread."""
+    table = pd.read_csv(results / "scores.csv")
+    table = table.astype({"options": object}).fillna(
+        {"options": "", "cell_m": 0.0, "lag_s": 0.0}
+    )  # the DEM has none
+    whole = table[table["time_s"].isna() & (table["window"] == "repeats")]
+    wide = whole.pivot_table(index=CHAIN, columns="quantity", values="value", sort=False)
+    rows = []
+    for (model, cell_m, lag_s, options), values in wide.iterrows():
+        kind = "spread" if model == "dem" else "error_rms"
+        named = [options] if options else []
+        chain = [f"{100 * cell_m:.3g} cm", f"{lag_s:g} s", *named] if model != "dem" else ["noise floor"]
+        pair = {side: values.get(f"{kind}_{side}", np.nan) for side in ("radial", "axial")}
+        rows.append({"chain": f"{model}: {', '.join(chain)}", "left and right": number(pair["radial"]),
+                     "low and up": number(pair["axial"])})  # fmt: skip
+    return pd.DataFrame(rows)
+
+
+def validation(results: Path) -> pd.DataFrame:
+    """Differences from measured profiles, with their aims."""
+    table = pd.read_csv(results / "validation_metrics.csv")
+    kept = pd.DataFrame({"quantity": table["quantity"].str.replace("_", " "), "unit": table["unit"]})
+    return kept.assign(value=table["value"].map(number), aim=table["aim"].map(number)).astype(str)
+
+
+def verification(results: Path) -> pd.DataFrame:
+    """The solvers against theory."""
+    table = pd.read_csv(results / "verification.csv")
+    kept = table[["quantity"]].copy()
+    for name in ("value", "reference", "tolerance"):
+        kept[name] = table[name].map("{:.4g}".format)
+    return kept.assign(passed=table["pass"], source_of_reference=table["source"]).rename(
+        columns={"source_of_reference": "reference from"}
+    )
+
+
+def peers(results: Path) -> pd.DataFrame:
+    """Times of other codes on the same beds."""
+    table = pd.read_csv(results / "peers.csv")
+    low, high = (table[f"{end}_s_per_simulated_s"].map(number) for end in ("fastest", "slowest"))
+    return pd.DataFrame(
+        {
+            "bed": table["bed"],
+            "code": table["code"],
+            "wall s a simulated s": table["wall_s_per_simulated_s"].map(number),
+            "range": [f"{start} to {end}" for start, end in zip(low, high, strict=True)],
+            "times bedFoam's": table["relative_to_bedfoam_1"].map(number),
+            "pressure drop over weight": table["pressure_drop_per_weight_1"].map(number),
+            "mean height": [f"{1e3 * height:.1f} mm" for height in table["mean_height_m"]],
+            "simulated": [f"{1e3 * span:.3g} ms" for span in table["simulated_s"]],
+            "differs by": table["differences"].fillna(""),
+        }
+    )
+
+
+def stability(results: Path) -> pd.DataFrame:
+    """How the settings end, with their guards on and with one off."""
+    table = pd.read_csv(results / "stability.csv")
+    table["guards"] = table["guards"].where(table["guards"] == "on", "one off")
+    counted = table.pivot_table(index="outcome", columns="guards", aggfunc="size", fill_value=0)
+    counted = counted.reindex(columns=["on", "one off"], fill_value=0)
+    counted.columns = pd.Index(["guards on", "a guard off"])
+    return counted.reset_index().astype(str)
+
+
+def benchmark(results: Path) -> pd.DataFrame:
+    """Time and memory of the Markov core."""
+    table = pd.read_csv(results / "benchmark_core.csv", keep_default_na=False)
+    return pd.DataFrame(
+        {
+            "work": table["work"],
+            "method": table["method"],
+            "particles": [f"{count:,}" for count in table["particles"]],
+            "cells": [
+                f"{columns} x {rows}" for columns, rows in zip(table["columns"], table["rows"], strict=True)
+            ],
+            "median": [f"{number(seconds)} s" for seconds in table["median_s"]],
+            "processor": [f"{number(seconds)} s" for seconds in table["cpu_s"]],
+            "peak memory": [f"{memory:.0f} MB" for memory in table["peak_rss_mb"]],
+            "entries": [f"{count:,}" for count in table["entries"]],
+            "target": table["target"],
+            "met": table["met"],
+        }
+    )
+
+
+def _chains(results: Path) -> pd.DataFrame:
+    table = pd.read_csv(results / "tradeoff.csv", dtype={"problem": str, "preset": str})
+    return table[(table["half"] == "mcm") & table["problem"].isna()].copy()
+
+
+def _by_cell_and_lag(results: Path, column: str) -> pd.DataFrame:
+    table = _chains(results)
+    table = table[table["axis"] == CELLS_AND_LAGS]
+    size = np.sqrt(table["cell_width_m"] * table["cell_height_m"]).map(lambda value: float(f"{value:.2g}"))
+    return by_cell_and_lag(table.assign(cell_m=size).set_index(["cell_m", "lag_s"])[column].sort_index())
+
+
+def _cell(row: dict[str, float]) -> str:
+    return f"{100 * np.sqrt(row['cell_width_m'] * row['cell_height_m']):.2g} cm"
