@@ -9,7 +9,7 @@ from made import ROOT
 
 LIBRARY, UNIT = ROOT / "scripts" / "bedchain", ROOT / "tests" / "unit"
 # tests of the code as a whole
-OF_ALL = ("test_mirror.py", "test_layout.py")
+OF_ALL = ("test_mirror.py", "test_layout.py", "test_readme.py")
 # | `studies/peers/yade.py` | why it has no test file |
 REASON = re.compile(r"^\| `([\w/]+\.py)` \| ([^|]+) \|$", re.MULTILINE)
 

@@ -64,8 +64,9 @@ def read_provenance(folder: Path) -> dict[str, Any]:
         It is missing or cannot be read.
     """
     try:
-        found = json.loads((folder / PROVENANCE).read_text(encoding="utf-8"))
-        _ = found["solver_keys"], found["start_s"], found["end_s"], found["history_s"], found["files"]
+        provenance = json.loads((folder / PROVENANCE).read_text(encoding="utf-8"))
+        for key in ("solver_keys", "start_s", "end_s", "history_s", "files"):
+            _ = provenance[key]
     except (OSError, ValueError, KeyError, TypeError) as error:
         raise UserError(
             f"{folder}: no readable archive of a bed ({error!r}); fetch it again, {SIMULATE}"

@@ -1,58 +1,54 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Checks of a case's numbers against each other, each refused with key, line and remedy."""
+"""Checks of a case: all of them are registered, and each reads keys that exist."""
+
+import copy
+import subprocess
+import sys
 
 import pytest
 
-from bedchain.case.load import load_case
-from made.case_text import END, assert_refused, changed_case
+from bedchain.case.checks import CHECKS, physical_problems
+from bedchain.case.schema import load_schema, schema_keys
+from made import ROOT
 
-MISTAKES = [
-    # replaced, by, key named, in the message
-    ("number: 7200", "number: 90000", "particles.number", "at most"),
-    ("width_m: 0.09", "width_m: 9.0e-4", "bed.width_m", "narrower than a particle"),
-    ("width_m: 0.09", "width_m: 0.09\n  thickness_m: 7.0e-4", "bed.thickness_m", "narrower than a particle"),
-    (
-        "width_m: 0.09",
-        "width_m: 0.09\n  layers: many\n  thickness_m: 1.1e-3",
-        "bed.thickness_m",
-        "narrower than the lattice",
-    ),
-    (
-        "width_m: 0.09\n  height_m: 0.45\nparticles:\n  number: 7200",
-        "width_m: 0.09\n  height_m: 0.45\n  layers: many\n  thickness_m: 0.01\nparticles:\n  number: 400000",
-        "particles.number",
-        "take at most",
-    ),
-    ("seed: 15485863", "seed: 15485864", "seed", "15485867"),
-    ("seed: 15485863", "seed: 9973", "seed", "above 10000"),
-    ("seed: 15485863", "seed: 4294967311", "seed", "31 bits"),
-    (END, "  dem_step_s: 5e-5\n" + END, "time.dem_step_s", "allow_unstable_step"),
-    (END, "  gas_step_s: 1e-2\n" + END, "time.gas_step_s", "Courant"),
-    (END, "  frame_interval_s: 0.02501\n" + END, "time.frame_interval_s", "multiple"),
-    (END, "  segment_s: 0.51\n" + END, "time.segment_s", "take 0.5"),
-    (END, "  end_s: 4.0", "comparison.end_s", "raise time.end_s to 5"),
-    ("  start_s: 1.0", "  start_s: 3.5", "learning.end_s", "not after"),
-    ("  start_s: 1.0", "  start_s: 1.01", "learning.start_s", "multiple of time.frame_interval_s"),
-    ("comparison:\n  start_s: 3.0", "comparison:\n  start_s: 2.0", "comparison.start_s", "at least 3"),
-    ("columns: 10", "columns: 91", "cells.columns", "at most 90"),
-    ("split_z_m: 0.081", "split_z_m: 0.5", "mixing.split_z_m", "outside the bed"),
-    ("split_z_m: 0.081", "split_z_m: 0.081\nchain:\n  lag_s: 0.03", "chain.lag_s", "take 0.025"),
-    (
-        "split_z_m: 0.081",
-        "split_z_m: 0.081\ngas:\n  cell_size_m: 0.004",
-        "gas.cell_size_m",
-        "does not divide",
-    ),
-    ("split_z_m: 0.081", "split_z_m: 0.081\ngas:\n  cell_size_m: 0.01", "run.ranks", "take run.ranks: 1"),
-    ("batch_height_m: 0.027", "moments_s: [0.05, 2.05]", "figures.moments_s", "after the end"),
-]
+NAMES = {
+    "a_box_has_gas_and_a_drum_has_none", "a_revolution_has_frames", "cells_hold_particles",
+    "cells_of_the_discussion_hold_particles", "drum_is_dumped_in_binary_and_once",
+    "drum_is_round_and_flat", "gas_cells_fit", "gas_cells_resolve_the_bed", "gas_is_light",
+    "gas_step_is_stable", "gas_step_resolves_the_fall", "gas_steps_nest", "lag_fits",
+    "moments_are_frames", "particles_carry_the_bed", "particles_fit", "particles_fit_into_the_drum",
+    "ranks_share_gas_evenly", "repeats_start_at_a_segment", "seed_is_prime", "splits_lie_in_bed",
+    "step_is_stable", "steps_nest", "windows_lie_in_time",
+}  # fmt: skip
+LIST_CHECKS = (
+    "from bedchain.case.check_registry import CHECKS; print(*[check.__name__ for _, check in CHECKS])"
+)
 
 
-@pytest.mark.parametrize(("old", "new", "key", "message"), MISTAKES)
-def test_a_mistake_is_refused_with_key_line_and_remedy(tmp_path, old, new, key, message):
-    assert_refused(changed_case(tmp_path, (old, new)), key, message)
+@pytest.mark.parametrize("module", ["load", "checks", "presets"])
+def test_every_check_is_registered_by_the_modules_that_need_them(module):
+    command = [sys.executable, "-c", f"import bedchain.case.{module}; {LIST_CHECKS}"]
+    done = subprocess.run(command, cwd=ROOT / "scripts", capture_output=True, text=True, check=True)
+    assert sorted(done.stdout.split()) == sorted(NAMES)
 
 
-def test_the_explicit_key_allows_an_unstable_step(tmp_path):
-    step = "  dem_step_s: 5e-5\n  allow_unstable_step: true\n"
-    assert load_case(changed_case(tmp_path, (END, step + END)))["time"]["dem_step_s"] == 5e-5
+def test_checks_read_keys_of_the_schema():
+    known = {*schema_keys(load_schema()), "scene"}
+    assert len(CHECKS) == len(NAMES)
+    assert {key for keys, _ in CHECKS for key in keys} <= known
+
+
+def test_every_check_speaks_of_its_own_keys_and_none_of_broken_ones(paper):
+    assert physical_problems(paper, set(), {}) == []
+    wrong = copy.deepcopy(paper)
+    wrong["seed"], wrong["cells"]["columns"], wrong["gas"]["cell_size_m"] = 4, 1000, 0.004
+    problems = physical_problems(wrong, set(), {"seed": 2})
+    assert {"seed", "cells.columns", "gas.cell_size_m"} <= {problem.key for problem in problems}
+    assert [problem.line for problem in problems if problem.key == "seed"] == [2]
+    # what the schema has refused already is not checked again
+    left = physical_problems(wrong, {"seed", "cells.columns"}, {})
+    assert "gas.cell_size_m" in {problem.key for problem in left}
+    assert not {"seed", "cells.columns"} & {problem.key for problem in left}
+    # nor what is not there
+    del wrong["cells"]
+    assert "cells.columns" not in {problem.key for problem in physical_problems(wrong, set(), {})}

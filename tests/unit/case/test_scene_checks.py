@@ -10,7 +10,6 @@ from bedchain.case.load import load_case
 from bedchain.case.scene_checks import drum_sites
 from bedchain.errors import CaseError
 from made import ROOT
-from made.case_text import END, assert_refused, changed_case
 
 DRUM = ROOT / "cases" / "drum" / "case.yaml"
 
@@ -73,15 +72,3 @@ def test_as_many_fit_as_the_lattice_has_sites(changed):
     load_case(changed(particles={"number": sites}))
     with pytest.raises(CaseError, match=f"take at most {sites}"):
         load_case(changed(particles={"number": sites + 1}))
-
-
-MISTAKES = [
-    (END, "  dem_step_s: 1.5e-5\n" + END, "time.gas_step_s", "multiple of time.dem_step_s"),
-    (END, "  gas_step_s: 3e-4\n" + END, "time.frame_interval_s", "multiple of time.gas_step_s"),
-    (END, "  ramp_s: 5.0\n" + END, "time.ramp_s", "not before"),
-]
-
-
-@pytest.mark.parametrize(("old", "new", "key", "message"), MISTAKES)
-def test_steps_of_the_gas_that_do_not_nest_are_refused(tmp_path, old, new, key, message):
-    assert_refused(changed_case(tmp_path, (old, new)), key, message)

@@ -1,6 +1,9 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Disk space that a run needs, and a disk too full for it."""
 
+import shutil
+from types import SimpleNamespace
+
 import pytest
 
 from bedchain.case.load import load_case
@@ -25,5 +28,11 @@ def test_the_paper_s_run_needs_gigabytes_and_the_short_one_megabytes(paper):
 
 def test_a_full_disk_is_refused_with_space_needed_and_free(tmp_path):
     require_disk(tmp_path, 1)
-    with pytest.raises(UserError, match=r"needs 1000000000000 MB on disk, \d+ MB are free; free some space"):
+    with pytest.raises(UserError, match=r"needs 1.00EB on disk, [\d.]+.B are free; free some space"):
         require_disk(tmp_path, 10**18)
+
+
+def test_little_space_needed_is_given_with_digits(tmp_path, monkeypatch):
+    monkeypatch.setattr(shutil, "disk_usage", lambda _: SimpleNamespace(free=300))
+    with pytest.raises(UserError, match=r"needs 1.20kB on disk, 300B are free"):
+        require_disk(tmp_path, 5200, done=4000)

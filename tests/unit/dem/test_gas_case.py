@@ -73,7 +73,7 @@ def test_a_later_segment_goes_on_from_the_last_fields(tmp_path, commands):
 def test_a_repeat_on_other_ranks_is_put_together_and_cut(tmp_path, commands, before, after, tools):
     write_case(tmp_path / "before", "0.5", ranks=before)
     gas_case.copy_last_state(tmp_path / "before", tmp_path / "gas")
-    gas_case.cut_for_ranks(tmp_path / "gas", tmp_path / "before", after)
+    gas_case.redistribute(tmp_path / "gas", tmp_path / "before", after)
     assert commands == tools
     parts = sorted(item.name for item in (tmp_path / "gas").glob("processor*"))
     assert parts == ([f"processor{rank}" for rank in range(before)] if before == after > 1 else [])

@@ -4,7 +4,7 @@
 import numpy as np
 import pytest
 
-from bedchain.dem.lattices import at_rest, bulk_voidage, lattice, loose, rows_of_voidage
+from bedchain.dem.lattices import bulk_voidage, lattice, loose_lattice, rows_of_voidage, spheres_at_rest
 
 DIAMETER = 1e-3
 
@@ -18,7 +18,7 @@ def test_a_lattice_fills_its_box_up_to_the_walls():
 
 
 def test_a_loose_heap_has_as_many_spheres_apart_and_moving():
-    spheres = loose(0.02, 50, DIAMETER, np.random.default_rng(1))
+    spheres = loose_lattice(0.02, 50, DIAMETER, np.random.default_rng(1))
     gaps = np.hypot(*(spheres[:, None, :2] - spheres[None, :, :2]).transpose(2, 0, 1))
     assert len(spheres) == 50 and gaps[~np.eye(50, dtype=bool)].min() > DIAMETER
     assert spheres[:, 0].min() >= DIAMETER / 2 and spheres[:, 0].max() <= 0.02 - DIAMETER / 2
@@ -43,5 +43,5 @@ def test_the_bulk_of_a_square_lattice_has_its_voidage():
 
 
 def test_spheres_at_rest_do_not_move():
-    spheres = at_rest(np.array([0.1, 0.2]), np.array([0.3, 0.4]), DIAMETER)
+    spheres = spheres_at_rest(np.array([0.1, 0.2]), np.array([0.3, 0.4]), DIAMETER)
     assert spheres.tolist() == [[0.1, 0.3, 0, 0, DIAMETER], [0.2, 0.4, 0, 0, DIAMETER]]

@@ -5,7 +5,7 @@ from pathlib import Path
 
 import pytest
 
-from bedchain.dem.processes import Progress, last_words, on_ranks, run_deck, run_logged, solver_environment
+from bedchain.dem.processes import Progress, error_lines, on_ranks, run_deck, run_logged, solver_environment
 from bedchain.errors import UserError
 
 
@@ -45,7 +45,7 @@ def test_a_child_ends_when_its_reader_fails(tmp_path):
 
 def test_without_an_error_line_the_last_lines_are_shown(tmp_path):
     (tmp_path / "log").write_text("\n\n".join(map(str, range(30))))
-    assert last_words(tmp_path / "log").split() == [str(line) for line in range(18, 30)]
+    assert error_lines(tmp_path / "log").split() == [str(line) for line in range(18, 30)]
 
 
 def test_decks_get_their_variables_and_ranks(tmp_path, monkeypatch):

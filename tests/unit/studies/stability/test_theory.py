@@ -7,7 +7,8 @@ import math
 import numpy as np
 import pytest
 
-from bedchain.case.scene_checks import FREE_FALL_SHARE_MAX, GAS_CELL_MAX, OVERLAP_AT_REST_MAX
+from bedchain.case.bed_checks import OVERLAP_AT_REST_MAX
+from bedchain.case.gas_checks import FREE_FALL_SHARE_MAX, GAS_CELL_MAX
 from bedchain.physics.contacts import contact_modulus
 from bedchain.studies.stability import theory
 from bedchain.studies.stability.beds import Bed, scene

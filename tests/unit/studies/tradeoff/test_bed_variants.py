@@ -5,7 +5,7 @@ from pathlib import Path
 
 import pytest
 
-from bedchain.case.checks import RAYLEIGH_SHARE_MAX
+from bedchain.case.bed_checks import RAYLEIGH_SHARE_MAX
 from bedchain.case.load import load_case
 from bedchain.case.variants import write_variant
 from bedchain.errors import UserError
