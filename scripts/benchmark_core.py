@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Time and memory of the Markov core beside deeptime and a plain scipy call: a table for the README."""
+"""Time and memory of the Markov core beside deeptime and a scipy call: the table of scripts/README.md."""
 
 import argparse
 import json

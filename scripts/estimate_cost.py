@@ -11,7 +11,7 @@ from bedchain.case.presets import read_presets
 from bedchain.case.schema import Case
 from bedchain.files import write_csv, write_text
 from bedchain.stage import LOG, run_stage
-from bedchain.studies.cost.actual import FACTOR_AIM, compared, happened, outside
+from bedchain.studies.cost.actual import FACTOR_AIM, actual_cost, beside_actual, far_from_estimate
 from bedchain.studies.cost.estimate import predicted
 from bedchain.studies.cost.machine_speed import bed_of, calibrate
 
@@ -53,10 +53,10 @@ def estimate_cost(
     speed = calibrate([run for run in runs if run.parent != results], bed_of(case))
     folders = {name: Path(folder) for name, folder in benchmarks.items()}
     expected = predicted(case, speed, read_presets(presets).values(), archived)
-    found = compared(expected, happened(case, results, table.parent, folders))
+    found = beside_actual(expected, actual_cost(case, results, table.parent, folders))
     write_csv(found.reset_index(), table)
     write_text(text, "\n".join([*header(case, speed.source, archived), lines(found), ""]))
-    for name in outside(found):
+    for name in far_from_estimate(found):
         LOG.info(
             "%s came out %.2f times as long as estimated, more than %g",
             name,

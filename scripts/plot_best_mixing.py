@@ -15,7 +15,7 @@ from bedchain.files import write_csv
 from bedchain.stage import run_stage
 
 PANELS = {"left": "left half", "right": "right half", "low": "lower part", "up": "upper part"}
-REPEAT, MONTE_CARLO = "repeat_", "_monte_carlo"
+REPEAT, MONTE_CARLO = "dem_", "_monte_carlo"
 
 
 def plot_best_mixing(

@@ -19,13 +19,14 @@ from bedchain.measures.batch import Batch
 from bedchain.measures.lagrangian import Statistics
 from bedchain.measures.mixing import Splits
 from bedchain.stage import LOG, run_stage
-from bedchain.studies.records import only, stamp
+from bedchain.studies.candidates import Candidate
+from bedchain.studies.records import remove_other_results, stamp
 from bedchain.studies.scan import Task, named
-from bedchain.studies.scores.candidates import Candidate, candidates
 from bedchain.studies.scores.held_out import HeldOut, hold_out
+from bedchain.studies.scores.predictions import Predictions, batch_shares, dem_statistics, predict_held_out
 from bedchain.studies.scores.rows import dem_rows, score_rows
+from bedchain.studies.scores.search_spaces import candidates
 from bedchain.studies.scores.selection import select
-from bedchain.studies.scores.tested_chain import Trial, batch_shares, dem_statistics, try_out
 from bedchain.trajectory.frames import Window, lag_frames
 from bedchain.trajectory.grid import Grid
 from bedchain.trajectory.realisations import open_bed, open_repeats
@@ -130,7 +131,8 @@ def score_models(
     task = Task(grid, splits, case.estimator, spacing, compared.stop - 1 - compared.start)
     tried = candidates(registry.LEARNERS, grid, lag, case.diameter_m) if tried is None else tried
     about: dict[str, object] = {"task": repr(task), "learning": learning, "comparison": comparison}
-    kept = only(files.scores.parent / "candidates" / stamp([bed.trajectory, bed.metadata], about))
+    folder = files.scores.parent / "candidates" / stamp([bed.trajectory, bed.metadata], about)
+    kept = remove_other_results(folder)
     table = select(tried, run, which, task, kept)
     chosen = {one.name: one for one, mark in zip(tried, table["chosen"], strict=True) if mark}
     winner = table.loc[table["best"] == 1, "model"].item()
@@ -139,10 +141,10 @@ def score_models(
              spacing, len(repeats), "runs" if held.repeated else "starts")  # fmt: skip
     dem = [dem_statistics(held, number) for number in range(len(runs))]
     found = [{"model": "dem"} | row for row in dem_rows(held, dem)]
-    trials: dict[str, Trial] = {}
+    trials: dict[str, Predictions] = {}
     for name, one in {**chosen, BASELINE: Candidate("static", case.columns, case.rows, lag)}.items():
         LOG.info("test of %s: %s", name, one.key)
-        trials[name] = try_out(one, which, held, task, case.seed)
+        trials[name] = predict_held_out(one, which, held, task, case.seed)
         if name != BASELINE or one not in chosen.values():
             labels = named(one, grid, run.interval_s)
             found += [labels | row for row in score_rows(trials[name], held)]
@@ -154,7 +156,7 @@ def score_models(
     write_arrays(files.best, batch_of_best(trials[winner], held, winner, chosen[winner], case.seed))
 
 
-def mixing_table(held: HeldOut, trials: dict[str, Trial], winner: str) -> pd.DataFrame:
+def mixing_table(held: HeldOut, trials: dict[str, Predictions], winner: str) -> pd.DataFrame:
     """Curves of the paper's start: DEM, repeats, chains, and one Monte Carlo of the best.
 
     Returns
@@ -167,7 +169,7 @@ def mixing_table(held: HeldOut, trials: dict[str, Trial], winner: str) -> pd.Dat
     for number in first:
         start = held.starts[number]
         times = held.runs[start.run].times_s[start.frame : start.last + 1]
-        source = "dem" if start.run == 0 else f"repeat_{start.run}"
+        source = "dem" if start.run == 0 else f"dem_{start.run}"
         parts.append(curve_table(times, source, held.curves[number, : start.length + 1]))
     times = held.runs[0].times_s[held.starts[0].frame : held.starts[0].last + 1]
     for name, trial in trials.items():
@@ -200,7 +202,7 @@ def lagrangian_table(found: dict[str, list[Statistics]]) -> pd.DataFrame:
     return pd.concat(parts, ignore_index=True)
 
 
-def batch_of_best(trial: Trial, held: HeldOut, model: str, one: Candidate, seed: int) -> dict[str, Any]:
+def batch_of_best(trial: Predictions, held: HeldOut, model: str, one: Candidate, seed: int) -> dict[str, Any]:
     """Where the best model takes the batch, as chain_<model>.npz holds it, on the case's cells."""
     start, inside = held.starts[0], held.moments[held.moments <= held.starts[0].length]
     begin = held.runs[0].leading_to(trial.chain.grid, start.frame, trial.lag)

@@ -21,7 +21,7 @@ from bedchain.files import write_csv
 from bedchain.studies.stability.bed_settings import bed_settings
 from bedchain.studies.stability.chain_settings import chain_settings
 from bedchain.studies.stability.maps import draw_maps
-from bedchain.studies.stability.settings import Setting, chosen, is_of_chains
+from bedchain.studies.stability.settings import StabilitySetting, chosen, is_of_chains
 from bedchain.studies.stability.study import LONGEST_S, run_study
 from bedchain.studies.stability.verdict import FAULTS
 from bedchain.workflow import files_behind, source_files
@@ -31,7 +31,7 @@ FOLDER = Path("results/stability")
 STABILITY = Path("scripts/bedchain/studies/stability")
 
 
-def sources(settings: list[Setting]) -> dict[str, list[Path]]:
+def sources(settings: list[StabilitySetting]) -> dict[str, list[Path]]:
     """Files that the verdicts of each group depend on: the solvers' or the chains'."""
     decks = source_files("liggghts_inputs", "in.settle", "in.fluidize", "in.contact", "include/*.in")
     gas = source_files("openfoam_case", "0.orig/*", "constant/*", "system/*")

@@ -21,12 +21,12 @@ from bedchain.errors import UserError
 from bedchain.files import write_csv
 from bedchain.provenance import machine
 from bedchain.stage import LOG, stage
-from bedchain.studies.records import only, stamp
+from bedchain.studies.marked_starts import Start, starts_in
+from bedchain.studies.records import remove_other_results, stamp
 from bedchain.studies.scan import Task
-from bedchain.studies.scores.marked_starts import Start, starts_in
 from bedchain.studies.tradeoff import measured_chains, presets, simulated_beds
 from bedchain.studies.tradeoff.bed_variants import bed_variants
-from bedchain.studies.tradeoff.chain_settings import Own
+from bedchain.studies.tradeoff.chain_settings import CaseChain
 from bedchain.studies.tradeoff.observables import Reference, all_columns
 from bedchain.studies.tradeoff.reference import compared, own_grid, realisations, splits_of
 from bedchain.trajectory.frames import lag_frames, window
@@ -64,7 +64,7 @@ def study_tradeoff(case_file: Path, folder: Path, variants: list[str], at_once: 
     if unknown := sorted(set(variants) - set(known)):
         raise UserError(f"there is no variant {', '.join(unknown)}: take of {', '.join(known)}")
     bench, files = opened(case, folder)
-    kept = only(folder / "tradeoff" / "settings" / stamp(files, {"case": case}))
+    kept = remove_other_results(folder / "tradeoff" / "settings" / stamp(files, {"case": case}))
     table = pd.DataFrame(measured_chains.measure_all(bench, kept))
     floors = bench.reference.floors()
     floor = floors["mixing"] if floors["mixing"] > ROUND_OFF else np.nan
@@ -82,7 +82,7 @@ def study_tradeoff(case_file: Path, folder: Path, variants: list[str], at_once: 
     )
     about = machine()
     measured_on = f"{case['title']}; {about['processor']}, one core"
-    presets.write_presets(table, chosen, bench.own, measured_on, folder / "presets.yaml")
+    presets.write_presets(table, chosen, bench.base, measured_on, folder / "presets.yaml")
     for name, row in chosen.items():
         LOG.info("%s: %s, %.3g s", name, table.loc[row, "variant"], table.loc[row, "cost_s"])
 
@@ -106,7 +106,7 @@ def opened(case: Case, folder: Path) -> tuple[measured_chains.Bench, list[Path]]
     say(reference, runs, starts)
     length = starts[0].length
     models = tuple(case["chain"]["models"])
-    own = Own(grid, lag, case["chain"]["estimator"], learning, length, run.interval_s,
+    own = CaseChain(grid, lag, case["chain"]["estimator"], learning, length, run.interval_s,
               case["particles"]["diameter_m"], splits, models)  # fmt: skip
     task = Task(grid, splits, own.estimator, spacing, length)
     folds, seed = measured_chains.folds(run, learning, task), case["chain"]["seed"]

@@ -11,7 +11,7 @@ from bedchain.figures.style import DOUBLE_COLUMN_IN, LINE_COLOUR, FigureFiles, f
 from bedchain.files import write_csv
 from bedchain.measures.voidage import Slab
 from bedchain.stage import LOG, run_stage
-from bedchain.studies.validation import Bed, compare, read_points, simulated
+from bedchain.studies.validation import BedFrames, compare, read_points, simulated
 from bedchain.trajectory.frames import Window
 from bedchain.trajectory.store import BedFiles
 
@@ -70,7 +70,7 @@ def validate_bed(
     measured = read_points(points)
     store, described = bed.open()
     frames = store[window.frames(np.array(described["times_s"]))]
-    seen = Bed(frames, described["frame_interval_s"], slab.diameter_m / 2, width_m, slab.thickness_m)
+    seen = BedFrames(frames, described["frame_interval_s"], slab.diameter_m / 2, width_m, slab.thickness_m)
     compared, found = compare(measured, seen)
     found["aim"] = found["quantity"].map(AIMS)
     x = np.linspace(0, width_m, FINE_POINTS)

@@ -12,8 +12,8 @@ import score_models as stage
 from bedchain.errors import UserError
 from bedchain.measures.batch import Batch
 from bedchain.measures.mixing import Splits
+from bedchain.studies.candidates import Candidate
 from bedchain.studies.scores import selection
-from bedchain.studies.scores.candidates import Candidate
 from bedchain.trajectory.frames import Window
 from bedchain.trajectory.store import BedFiles
 from made.drawings import assert_drawn, outputs
@@ -221,7 +221,7 @@ def test_figures_of_the_scores_are_drawn(walkers, tmp_path):
     assert set(pareto["source"]) == {"static", "static_baseline", "velocity_class"}
     plot_best_mixing(walkers.mixing, walkers.selection, outputs(tmp_path, "b"), "#222222", "#ee6677")
     curves = assert_drawn(tmp_path, "b")
-    assert {"dem", "repeat_1", "repeat_2", "static_baseline", "velocity_class"} < set(curves["source"])
+    assert {"dem", "dem_1", "dem_2", "static_baseline", "velocity_class"} < set(curves["source"])
     plot_autocorrelation(walkers.lagrangian, outputs(tmp_path, "a"), "#222222")
     lines = assert_drawn(tmp_path, "a").query("time_s == 0")
     assert lines["autocorrelation_1"].to_numpy() == pytest.approx(1.0)

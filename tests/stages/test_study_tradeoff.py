@@ -15,7 +15,7 @@ from bedchain.errors import UserError
 from bedchain.measures.mixing import Splits
 from bedchain.studies.tradeoff import chain_settings, measured_chains, simulated_beds
 from bedchain.studies.tradeoff.bed_variants import BedVariant
-from bedchain.studies.tradeoff.observables import seen_errors
+from bedchain.studies.tradeoff.observables import bed_errors
 from bedchain.trajectory.frames import Window
 from bedchain.trajectory.store import BedFiles
 from made.drawings import assert_drawn, outputs
@@ -180,7 +180,7 @@ def test_a_bed_is_measured_against_all_realisations(walkers, tmp_path):
     values = np.load(walkers.folder / "trajectory.npy").astype(float)
     write_run(tmp_path, values, np.arange(FRAMES) * 0.025, SIZE, SIZE)
     write_series(tmp_path, np.arange(0, 3.5, 5e-3), 2 * PRESSURE, HEIGHT, NUMBER)
-    found = seen_errors(bench.reference, simulated_beds.seen(tmp_path, case))
+    found = bed_errors(bench.reference, simulated_beds.bed_observables(tmp_path, case))
     assert not (tmp_path / "trajectory.npy").exists()
     # three realisations, one of which it is: two thirds of the squares of two differences
     assert found["mixing_floors_1"] == pytest.approx(np.sqrt(4 / 3), rel=0.25)
@@ -237,7 +237,7 @@ def test_figures_of_the_study_are_drawn(walkers, tmp_path):
         write_run(tmp_path / name, values, np.arange(FRAMES) * 0.025, SIZE, SIZE)
         write_series(tmp_path / name, np.arange(0, 3.5, 5e-3), PRESSURE, HEIGHT, NUMBER)
         labels = {"half": "dem", "axis": "realisation" if name == "base" else "ablation", "variant": name}
-        errors = seen_errors(bench.reference, simulated_beds.seen(tmp_path / name, case))
+        errors = bed_errors(bench.reference, simulated_beds.bed_observables(tmp_path / name, case))
         rows.append(labels | {"cost_s": cost_s} | errors)
     pd.concat([walkers.table.replace("", np.nan), pd.DataFrame(rows)]).to_csv(tmp_path / "t.csv", index=False)
     plot_variants(tmp_path / "t.csv", outputs(tmp_path / "b", "b"))

@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""What physics a scene needs, by dimensionless numbers, and whether the pipeline builds just that.
+"""Criteria for the physics that a scene needs, by dimensionless numbers, and whether the pipeline has it.
 
-Each criterion sets a number against a threshold with its source, and keeps or drops one piece of physics. A
-threshold is one by definition, derived, of a publication, or our choice; what could not be verified says so.
+Each criterion compares a number with a threshold and its source, and keeps or drops one piece of physics. A
+threshold holds by definition, is derived, published, or our choice; sources that were not checked say so.
 """
 
 import math
@@ -17,7 +17,7 @@ from bedchain.physics.scene_numbers import Scene
 
 CROWE = "Crowe, Schwarzkopf, Sommerfeld, Tsuji 2012, Multiphase Flows with Droplets and Particles"
 FLAT = "by definition: a grain's weight; an asperity before a flat (Israelachvili 2011, not verified)"
-# Assumptions where the case has no key: dry glass or sand, rough as such grains are; numbers not verified
+# Assumptions where the case has no key: dry glass or sand of usual roughness; numbers not verified
 HAMAKER_J = 6.5e-20  # silica in air: Israelachvili 2011, Intermolecular and Surface Forces, Table 13.3
 GAP_M = 4e-10  # of closest approach: Seville, Willett, Knight 2000, Powder Technol. 113, 261
 ASPERITY_M = 1e-7  # radius of a grain's asperities: likewise
@@ -28,24 +28,24 @@ STRESS_RATIO = 0.5  # horizontal over vertical stress in a settled bed; 0.3 to 0
 
 @dataclass(frozen=True)
 class Criterion:
-    """One piece of physics, its number, and what follows from it.
+    """One piece of physics, its dimensionless number and threshold.
 
     Attributes
     ----------
     physics : str
-        What is kept or dropped.
+        Kept or dropped by the number.
     number : str
         Name of the number.
     symbol : str
         Its formula.
     value, threshold : float
-        Dimensionless; physics is kept from the threshold on [1].
+        The physics is kept where the value reaches the threshold [1].
     source : str
-        Where the threshold is from.
+        Of the threshold.
     built : bool
-        Whether the pipeline builds it for this scene.
+        Whether the pipeline has it for this scene.
     of_gas : bool
-        Whether it goes with the gas: dropped where the gas is.
+        Whether it belongs to the gas and is dropped with it.
     """
 
     physics: str
@@ -69,7 +69,7 @@ def audit(scene: Scene) -> pd.DataFrame:
     Parameters
     ----------
     scene : Scene
-        Of `bedchain.scene_numbers.scene_of`.
+        Of `bedchain.case.scene.scene_of`.
 
     Returns
     -------
@@ -103,12 +103,12 @@ def audit(scene: Scene) -> pd.DataFrame:
 
 
 def gas_criteria(scene: Scene) -> Iterator[Criterion]:
-    """Whether the gas has to be simulated at all (the first), and what of it."""
-    own = numbers.single_drag(scene, math.sqrt(2 * GRAVITY_M_S2 * scene.fall)) / scene.weight
+    """Gas flow as a whole (first), then properties of the gas."""
+    single = numbers.single_drag(scene, math.sqrt(2 * GRAVITY_M_S2 * scene.fall)) / scene.weight
     carried = numbers.pressure_share(scene)
     yield Criterion(
         "gas flow", "drag over weight, forced or own", "max(dp_Ergun(U) A / W, F_d(sqrt(2 g h)) / w)",
-        max(carried, own), 0.1,
+        max(carried, single), 0.1,
         "our choice, a tenth of the weight; by definition 1 fluidizes, or is the terminal velocity",
         scene.gas,
     )  # fmt: skip
@@ -154,7 +154,7 @@ def gas_criteria(scene: Scene) -> Iterator[Criterion]:
 
 
 def turbulence_criteria(scene: Scene) -> Iterator[Criterion]:
-    """Turbulence in the pores, between the slab's walls, and against the drag of the particles."""
+    """Turbulence in the pores, between the walls of the slab, and of the size of the bed."""
     yield Criterion(
         "turbulence in the pores", "Reynolds number of the pores", "Re = rho_g (U / e) d / mu",
         numbers.reynolds(scene, scene.velocity / scene.voidage), 300,
@@ -175,7 +175,7 @@ def turbulence_criteria(scene: Scene) -> Iterator[Criterion]:
 
 
 def force_criteria(scene: Scene) -> Iterator[Criterion]:
-    """Which forces between gas and particles matter."""
+    """Forces between gas and particles."""
     # A particle in a gas that speeds up over W keeps the slip St / (1 + St), so that its drag over the gas's
     # momentum is Z / (1 + St). Accelerated evenly for a relaxation time t, it has the history force
     # 3 d^2 sqrt(pi rho_g mu t) a, and Stokes's drag 3 pi mu d a t: sqrt(18 rho_g / (pi rho_p)) of it.

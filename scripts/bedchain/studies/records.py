@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Results kept between runs of a long stage, in a folder whose name stands for all that they depend on."""
+"""Records: results kept between runs of a long stage, in a folder named by all that they depend on."""
 
 import hashlib
 import json
@@ -10,14 +10,14 @@ from typing import TypeVar
 
 from bedchain.files import write_text
 
-Made = TypeVar("Made")
+Result = TypeVar("Result")
 
 BLOCK_BYTES = 1 << 22
 STAMP_DIGITS = 16
 
 
 def stamp(files: Sequence[Path], values: dict[str, object]) -> str:
-    """A short name of the contents of files, of values, and of this library's source.
+    """Digest of the contents of files, of values, and of the source of this library.
 
     Parameters
     ----------
@@ -28,7 +28,7 @@ def stamp(files: Sequence[Path], values: dict[str, object]) -> str:
     Returns
     -------
     str
-        Hexadecimal; any change of what went in gives another.
+        Hexadecimal; any change of these gives another.
     """
     total = hashlib.sha256(json.dumps(values, sort_keys=True).encode())
     for file in [*files, *sorted(Path(__file__).parents[1].rglob("*.py"))]:
@@ -43,26 +43,26 @@ def record_of(folder: Path, key: str) -> Path:
     return folder / f"{hashlib.sha256(key.encode()).hexdigest()[:STAMP_DIGITS]}.json"
 
 
-def remembered(record: Path, make: Callable[[], Made]) -> Made:
-    """A result from its record, or made and recorded; an error leaves no record.
+def remembered(record: Path, make: Callable[[], Result]) -> Result:
+    """A result read from its record; without a record it is made and recorded. An error leaves no record.
 
     Parameters
     ----------
     record : Path
-        Its name stands for all that the result depends on.
+        Named by all that the result depends on.
     make : callable
-        Gives what json can hold.
+        Returns a result that json can hold.
     """
     if record.exists():
-        found: Made = json.loads(record.read_text(encoding="utf-8"))
-        return found
-    made = make()
-    write_text(record, json.dumps(made, indent=1))
-    return made
+        recorded: Result = json.loads(record.read_text(encoding="utf-8"))
+        return recorded
+    result = make()
+    write_text(record, json.dumps(result, indent=1))
+    return result
 
 
-def only(folder: Path) -> Path:
-    """The folder, made where missing, and its neighbours (results of other data or code) removed."""
+def remove_other_results(folder: Path) -> Path:
+    """Delete the other folders beside this one (results of other data or code); make it and return it."""
     if folder.parent.exists():
         for other in folder.parent.iterdir():
             if other != folder and other.is_dir():

@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""The scan of chains over cells, lags and options: learning, curves and cost of each, with progress.
+"""Scan of chains over cells, lags and options: learning, mixing curves and cost of each, with progress.
 
-Discussion, scores and trade-off are scans of their own settings with their own measure of error.
+Discussion, scores and trade-off each scan their settings with their measure of error.
 """
 
 import logging
@@ -18,28 +18,31 @@ from numpy.typing import NDArray
 from bedchain.chains import registry
 from bedchain.chains.chain import Chain
 from bedchain.measures.mixing import Splits, remaining_from_positions
+from bedchain.studies.candidates import Candidate, grid_of
+from bedchain.studies.marked_starts import Start
 from bedchain.studies.records import record_of, remembered
-from bedchain.studies.scores.candidates import Candidate, grid_of
-from bedchain.studies.scores.marked_starts import Start
 from bedchain.trajectory.frames import Frames, lag_frames
 from bedchain.trajectory.grid import Grid
 from bedchain.trajectory.realisations import Realisation
+from bedchain.uncertainty.deviations import interval, resampled, rms, stacked
 
 LOG = logging.getLogger(__name__)
 Setting = TypeVar("Setting")
 Result = TypeVar("Result")
 Value = TypeVar("Value")
 
-# a kernel is timed so many times, or fewer once they took so long together; the least of all counts, since
-# the first may have to load compiled code, which takes about a second
+# a kernel is timed `REPEATS` times, or fewer once `ENOUGH_S` have passed; the least time counts, since the
+# first may include loading compiled code, about a second
 REPEATS, ENOUGH_S = 4, 2.0
 # of the paths that are timed
 PATHS_SEED = 17
+# samples of an interval
+REPLICATES = 1000
 
 
 @dataclass(frozen=True)
 class Task:
-    """What all candidates share.
+    """Data and settings that all candidates share.
 
     Parameters
     ----------
@@ -51,7 +54,7 @@ class Task:
     spacing : int
         Frames between starts.
     comparison : int
-        Frame intervals in the comparison window: cost is that of its length.
+        Frame intervals in the comparison window, the length of a run that is timed.
     """
 
     grid: Grid
@@ -74,9 +77,9 @@ def scan(
     ----------
     settings : sequence
     measure : callable
-        Result of a setting; what json can hold where there are records.
+        Result of a setting; with records one that json can hold.
     name : callable
-        A setting in one line; the same name is the same setting.
+        A setting in one line, different for each.
     outcome : callable
         A result in a few words.
     records : Path, optional
@@ -120,7 +123,7 @@ def learned(candidate: Candidate, frames: Frames, task: Task) -> Chain:
 
 
 def observed_curves(run: Realisation, start: Start, splits: Splits) -> NDArray[np.float64]:
-    """The DEM's own mixing curves from a start, (length + 1, 4)."""
+    """Mixing curves of the DEM from a start, (length + 1, 4)."""
     values = run.values[start.frame : start.last + 1]
     return remaining_from_positions(values[:, 0], values[:, 1], *splits)
 
@@ -130,7 +133,7 @@ def predicted_curves(
 ) -> NDArray[np.float64]:
     """A chain's expected mixing curves from a start, at every frame, (length + 1, 4).
 
-    Between two steps of the chain the curves are straight: all candidates are judged at the same frames.
+    Straight lines between two steps of the chain, so that all candidates are judged at the same frames.
     """
     steps = -(-start.length // lag)
     curves = chain.mixing(run.leading_to(chain.grid, start.frame, lag), *splits, steps)
@@ -138,29 +141,36 @@ def predicted_curves(
 
 
 def at_frames(curves: NDArray[np.float64], lag: int, length: int) -> NDArray[np.float64]:
-    """Curves given at every lag, by straight lines at every frame from 0 to ``length``."""
+    """Curves at every lag, interpolated linearly to every frame from 0 to ``length``."""
     frames = np.arange(length + 1)
-    return np.stack([np.interp(frames, np.arange(len(curves)) * lag, one) for one in curves.T], axis=1)
+    return np.stack([np.interp(frames, np.arange(len(curves)) * lag, curve) for curve in curves.T], axis=1)
+
+
+def rms_over_starts(errors: Sequence[NDArray[np.float64]], seed: int) -> tuple[float, float, float]:
+    """Rms of the errors of curves from several starts, and the ends of its 95 % interval over starts."""
+    table = stacked(list(errors))
+    weights = resampled(np.zeros(len(table), np.int64), REPLICATES, np.random.default_rng(seed))
+    return float(rms(table)), *interval(rms, table, weights)
 
 
 def timed(kernel: Callable[[], Value]) -> tuple[Value, float]:
-    """What a kernel makes, and the least processor time it took, which other work hardly changes [s]."""
+    """Result of a kernel and the least processor time it took, which other work hardly changes [s]."""
     taken: list[float] = []
     while not taken or (len(taken) < REPEATS and sum(taken) < ENOUGH_S):
         begin = time.process_time()
-        made = kernel()
+        value = kernel()
         taken.append(time.process_time() - begin)
-    return made, min(taken)
+    return value, min(taken)
 
 
 def running_cost(chain: Chain, begin: Frames, task: Task) -> dict[str, float]:
-    """Processor time of a chain over the length of the comparison window, data in memory.
+    """Processor time of a run over the length of the comparison window, with the data in memory.
 
     Returns
     -------
     dict
-        curves_s: the expected mixing curves; paths_s: every particle moved, which all models and the DEM do
-        alike [s].
+        curves_s: of the expected mixing curves; paths_s: of moving every particle, which all models and the
+        DEM do alike [s].
     """
     steps = -(-task.comparison // lag_frames(chain.lag_s, begin.interval_s))
 
@@ -175,7 +185,7 @@ def running_cost(chain: Chain, begin: Frames, task: Task) -> dict[str, float]:
 
 
 def named(candidate: Candidate, case_grid: Grid, interval_s: float) -> dict[str, Any]:
-    """The columns that say which candidate a row of a table is of."""
+    """Columns that identify the candidate of a row."""
     grid = grid_of(candidate, case_grid)
     return {
         "model": candidate.name,

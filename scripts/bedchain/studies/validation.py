@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""The simulated bed at the points where one was measured, and how far the two are apart."""
+"""Simulated profiles at the points of a measured bed, and their differences from the measurement."""
 
 from pathlib import Path
 from typing import NamedTuple
@@ -12,14 +12,14 @@ from bedchain.errors import UserError
 from bedchain.measures.slices import QUANTITIES, Boxes, boxes_around, profile, solids_in_boxes
 from bedchain.uncertainty.bands import band, block_weights
 
-BLOCK_S = 0.5  # of the bands: several bubbles
+BLOCK_S = 0.5  # length of a block of the bands: several bubbles
 STRIP_M = 1.9e-3  # width of a strip: the distance of measured points across the bed
 SLICE_M = 4e-3  # height of a slice: about three particles, short against the distance of measured heights
 POINT_COLUMNS = ("quantity", "height_m", "position_x_m", "value")
 
 
-class Bed(NamedTuple):
-    """What profiles are made of.
+class BedFrames(NamedTuple):
+    """Frames and dimensions from which profiles are made.
 
     Attributes
     ----------
@@ -38,12 +38,14 @@ class Bed(NamedTuple):
     depth_m: float
 
 
-def simulated(bed: Bed, quantity: str, height_m: float, x_m: np.ndarray) -> tuple[pd.DataFrame, np.ndarray]:
-    """Profile across the bed with its 95 % band, from frames drawn again in blocks.
+def simulated(
+    bed: BedFrames, quantity: str, height_m: float, x_m: np.ndarray
+) -> tuple[pd.DataFrame, np.ndarray]:
+    """Profile across the bed with its 95 % band by a block bootstrap over frames.
 
     Parameters
     ----------
-    bed : Bed
+    bed : BedFrames
     quantity : str
         Of `QUANTITIES`.
     height_m : float
@@ -67,21 +69,21 @@ def simulated(bed: Bed, quantity: str, height_m: float, x_m: np.ndarray) -> tupl
     return pd.DataFrame(names | {"simulated": value, "ci_low": low, "ci_high": high}), replicates
 
 
-def compare(points: pd.DataFrame, bed: Bed) -> tuple[pd.DataFrame, pd.DataFrame]:
-    """Simulated values at the measured points, and how far they are off.
+def compare(points: pd.DataFrame, bed: BedFrames) -> tuple[pd.DataFrame, pd.DataFrame]:
+    """Simulated values at the measured points, and their differences from them.
 
     Parameters
     ----------
     points : DataFrame
-        Of `profiles.read_points`.
-    bed : Bed
+        Of `read_points`.
+    bed : BedFrames
 
     Returns
     -------
     table : DataFrame
         quantity, height_m, position_x_m, measured, simulated, ci_low, ci_high.
     metrics : DataFrame
-        Of `profiles.difference_metrics`, over all points of a quantity and for each height.
+        Of `difference_metrics`, over all points of a quantity and for each height.
     """
     tables, metrics = [], []
     for quantity, of_quantity in points.groupby("quantity", sort=False):
@@ -147,7 +149,7 @@ def difference_metrics(
     replicates: NDArray[np.float64],
     measured: np.ndarray,
 ) -> list[dict[str, object]]:
-    """How far simulated points are from measured ones: rms and mean, with 95 % bands.
+    """Differences of simulated from measured points: rms and mean, with 95 % bands.
 
     Parameters
     ----------
@@ -156,7 +158,7 @@ def difference_metrics(
     simulated, measured : (n_points,) ndarray
         In the unit.
     replicates : (n_replicates, n_points) ndarray
-        Simulated points from frames drawn again.
+        Simulated points of the bootstrap.
 
     Returns
     -------
@@ -164,12 +166,12 @@ def difference_metrics(
         quantity, source, value, unit, ci_low, ci_high.
     """
     rows: list[dict[str, object]] = []
-    for what, over in (("rms", rms), ("mean", lambda values: values.mean(axis=-1))):
+    for summary, over in (("rms", rms), ("mean", lambda values: values.mean(axis=-1))):
         low, high = band(over(replicates - measured))
         value = float(over(simulated - measured))
         rows.append(
             {
-                "quantity": f"{name}_error_{what}", "source": "dem", "value": value, "unit": unit,
+                "quantity": f"{name}_error_{summary}", "source": "dem", "value": value, "unit": unit,
                 "ci_low": float(low), "ci_high": float(high),
             }
         )  # fmt: skip
@@ -182,7 +184,7 @@ REPLICATES, SEED = 400, 11  # of the bands only: the same data give the same ban
 def profile_with_band(
     quantity: str, solids: NDArray[np.float64], boxes: Boxes, block: int
 ) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
-    """Profile over all frames, and those of frames drawn again by moving blocks.
+    """Profile over all frames, and those of a moving-block bootstrap over frames.
 
     Parameters
     ----------
@@ -190,7 +192,7 @@ def profile_with_band(
     solids : (n_frames, 2, n_boxes) ndarray
     boxes : Boxes
     block : int
-        Frames in a block; all profiles of a run draw the same blocks, so they can be put together.
+        Frames in a block; all profiles of a run draw the same blocks, so that they can be joined.
 
     Returns
     -------

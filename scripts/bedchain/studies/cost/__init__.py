@@ -1,2 +1,2 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""What a case will cost, before it runs, and what it did cost."""
+"""Estimated cost of a case before it runs, and its actual cost."""

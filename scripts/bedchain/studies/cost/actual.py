@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""What the stages of a case did cost, and how far its chains erred, beside the estimate."""
+"""Actual cost of the stages of a case and actual errors of its chains, beside the estimate."""
 
 import math
 from collections.abc import Iterable, Mapping
@@ -14,43 +14,43 @@ from bedchain.provenance import rule_times
 from bedchain.studies.cost.estimate import MEGABYTE, PREDICTED, Numbers
 from bedchain.studies.cost.machine_speed import SOLVERS, simulated_here
 
-FACTOR_AIM = 1.5  # what comes true is to be within this factor of the estimate
+FACTOR_AIM = 1.5  # ratio to the estimate within which an actual time should be
 TOTAL = "total"
 HAPPENED = [f"happened_{name}" for name in PREDICTED]
 
 
-def happened(case: Case, bed: Path, made: Path, benchmarks: Mapping[str, Path]) -> pd.DataFrame:
-    """What the stages that have run here did cost, and how far the chains erred.
+def actual_cost(case: Case, bed: Path, chains: Path, benchmarks: Mapping[str, Path]) -> pd.DataFrame:
+    """Actual cost of the stages that have run here, and errors of the chains.
 
     Parameters
     ----------
     case : dict
         A checked case.
-    bed, made : Path
-        ``results/<case>`` with its dem.json, and the folder of the chains: the same without a preset.
+    bed, chains : Path
+        ``results/<case>`` with its dem.json, and the folder of the chains (without a preset the same).
     benchmarks : mapping of str to Path
-        Snakemake's benchmark folders of the two, by ``bed`` and ``made``.
+        Snakemake's benchmark folders of the two, by ``bed`` and ``made`` (the chains).
 
     Returns
     -------
     DataFrame
         Indexed by stage: happened_wall_s, happened_memory_mb, happened_disk_mb, happened_error_floors, and
-        done_1, the share of the stage's work that this was.
+        done_1, the share of the work of the stage that was done.
     """
     times = {name: _of_jobs(folder) for name, folder in benchmarks.items()}
-    rows = _solver_happened(case, bed, times["bed"])
-    for name, file in (("parse_dumps", bed / "trajectory.npy"), ("assign_cells", made / "cells.npz")):
+    rows = _solver_stages(case, bed, times["bed"])
+    for name, file in (("parse_dumps", bed / "trajectory.npy"), ("assign_cells", chains / "cells.npz")):
         if job := times["bed" if name == "parse_dumps" else "made"].get(name):
             rows[name] = job | {"disk_mb": _size_mb([file])}
-    if "parse_dumps" in rows:  # the repeats' own jobs stand in folders of their own
+    if "parse_dumps" in rows:  # the jobs of repeats have their own folders
         others = [rule_times(folder) for folder in sorted((benchmarks["bed"] / "repeats").glob("*"))]
         rows["parse_dumps"]["wall_s"] += sum(
-            one["parse_dumps"]["wall_s"] for one in others if "parse_dumps" in one
+            jobs["parse_dumps"]["wall_s"] for jobs in others if "parse_dumps" in jobs
         )
         rows["parse_dumps"]["disk_mb"] += _size_mb(bed.glob("repeats/*/trajectory.npy"))
     for model in case["chain"]["models"]:
         rows |= {job: times["made"][job] for job in (f"build_transitions_{model}",) if job in times["made"]}
-        errors = errors_happened(made / "metrics.csv", model)
+        errors = actual_error(chains / "metrics.csv", model)
         if run := times["made"].get(f"run_chain_{model}", {} if math.isnan(errors) else {"wall_s": math.nan}):
             rows[f"run_chain_{model}"] = run | {"error_floors": errors}
     table = pd.DataFrame.from_dict(rows, orient="index").reindex(columns=[*PREDICTED, "done_1"])
@@ -58,11 +58,11 @@ def happened(case: Case, bed: Path, made: Path, benchmarks: Mapping[str, Path]) 
     return table.rename(columns=dict(zip(PREDICTED, HAPPENED, strict=True)))
 
 
-def _solver_happened(case: Case, bed: Path, times: Mapping[str, Numbers]) -> dict[str, Numbers]:
-    found = simulated_here(bed / "dem.json")
-    if found is None:
+def _solver_stages(case: Case, bed: Path, times: Mapping[str, Numbers]) -> dict[str, Numbers]:
+    manifest = simulated_here(bed / "dem.json")
+    if manifest is None:
         return {}
-    segments, rows = found["segments"], {}
+    segments, rows = manifest["segments"], {}
     state = bed / Path(segments[0]["folder"]).parent
     if (settled := settling_loop(state / "settled" / "liggghts.log")) is not None:
         rows["settling"] = {"wall_s": settled, "done_1": 1.0}
@@ -93,7 +93,7 @@ def settling_loop(log: Path) -> float | None:
         return None
 
 
-def errors_happened(metrics: Path, model: str) -> float:
+def actual_error(metrics: Path, model: str) -> float:
     """Rms error of a chain's four mixing curves over their noise floor [1]; NaN where either is missing."""
     if not metrics.exists():
         return math.nan
@@ -105,50 +105,50 @@ def errors_happened(metrics: Path, model: str) -> float:
     return float(np.sqrt((errors**2).mean() / (floors**2).mean()))
 
 
-def compared(expected: pd.DataFrame, found: pd.DataFrame) -> pd.DataFrame:
-    """Estimate and outcome side by side, with their ratio and a row for all.
+def beside_actual(expected: pd.DataFrame, actual: pd.DataFrame) -> pd.DataFrame:
+    """Estimate and actual cost side by side, with their ratio and a row for the total.
 
     Parameters
     ----------
-    expected, found : DataFrame
-        Of `predicted` and `happened`.
+    expected, actual : DataFrame
+        Of `predicted` and `actual_cost`.
 
     Returns
     -------
     DataFrame
-        Indexed by stage, with ratio_1: wall time that happened over that expected for the part done.
+        Indexed by stage, with ratio_1: actual wall time over that expected for the part done.
     """
-    table = expected.join(found)
+    table = expected.join(actual)
     part = table["wall_s"] * table["done_1"]
     table["ratio_1"] = table["happened_wall_s"] / part.where(part > 0)
-    seen = table["ratio_1"].notna()
+    known = table["ratio_1"].notna()
     total = {
         "wall_s": table["wall_s"].sum(),
         "memory_mb": table["memory_mb"].max(),
         "disk_mb": table["disk_mb"].sum(),
     }
-    if seen.any():
+    if known.any():
         total |= {
-            "happened_wall_s": table["happened_wall_s"][seen].sum(),
+            "happened_wall_s": table["happened_wall_s"][known].sum(),
             "happened_memory_mb": table["happened_memory_mb"].max(),
             "happened_disk_mb": table["happened_disk_mb"].sum(),
-            "done_1": part[seen].sum() / table["wall_s"].sum(),
-            "ratio_1": table["happened_wall_s"][seen].sum() / part[seen].sum(),
+            "done_1": part[known].sum() / table["wall_s"].sum(),
+            "ratio_1": table["happened_wall_s"][known].sum() / part[known].sum(),
         }
     table.loc[TOTAL] = pd.Series(total)
     return table.rename_axis("stage")
 
 
-def outside(table: pd.DataFrame) -> list[str]:
-    """Stages whose wall time came out further from the estimate than `FACTOR_AIM`."""
+def far_from_estimate(table: pd.DataFrame) -> list[str]:
+    """Stages whose actual wall time differs from the estimate by more than `FACTOR_AIM`."""
     ratios = table["ratio_1"].dropna()
     return list(ratios.index[(ratios > FACTOR_AIM) | (ratios < 1 / FACTOR_AIM)])
 
 
 def _of_jobs(folder: Path) -> dict[str, Numbers]:
     return {
-        job: {"wall_s": found["wall_s"], "memory_mb": found.get("peak_rss_mb", math.nan)}
-        for job, found in rule_times(folder).items()
+        job: {"wall_s": cost["wall_s"], "memory_mb": cost.get("peak_rss_mb", math.nan)}
+        for job, cost in rule_times(folder).items()
     }
 
 

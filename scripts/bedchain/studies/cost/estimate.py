@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""What a case will cost and how far its chains will err, from the case alone, stage by stage."""
+"""Estimated cost of each stage of a case and expected errors of its chains, from the case alone."""
 
 import math
 from collections.abc import Iterable
@@ -12,7 +12,7 @@ from bedchain.dem import disk
 from bedchain.errors import CaseError
 from bedchain.physics.whole_numbers import ratio
 from bedchain.studies.cost import machine_speed
-from bedchain.studies.cost.machine_speed import SOLVERS, Bed, Speed
+from bedchain.studies.cost.machine_speed import SOLVERS, BedSize, Speed
 
 MEGABYTE = 1e6
 PREDICTED = ["wall_s", "memory_mb", "disk_mb", "error_floors"]
@@ -22,7 +22,7 @@ Numbers = dict[str, float]
 def predicted(
     case: Case, speed: Speed, presets: Iterable[Preset] = (), archived: bool = False
 ) -> pd.DataFrame:
-    """Cost of each stage, one after the other on an otherwise idle machine; without figures and diagnostics.
+    """Estimated cost of each stage alone on an idle machine, without figures and diagnostics.
 
     Parameters
     ----------
@@ -31,14 +31,14 @@ def predicted(
     speed : Speed
         Of this machine.
     presets : iterable of Preset
-        Whose measured errors are known.
+        With measured errors.
     archived : bool
-        Whether the bed is taken from an archive: nothing is simulated then.
+        Whether the bed comes from an archive, so that nothing is simulated.
 
     Returns
     -------
     DataFrame
-        Indexed by stage: wall_s, memory_mb, disk_mb, error_floors; NaN where nothing is known.
+        Indexed by stage: wall_s, memory_mb, disk_mb, error_floors; NaN where unknown.
     """
     rows = {} if archived else solver_stages(case, speed)
     frames, number = _frames(case, case["time"]["end_s"]), case["particles"]["number"]
@@ -91,22 +91,22 @@ def solver_stages(case: Case, speed: Speed) -> dict[str, Numbers]:
     return rows
 
 
-def solver_wall(bed: Bed, span_s: float, speed: Speed) -> Numbers:
-    """Wall time of the solver's parts for a span of simulated time, on this machine [s]."""
+def solver_wall(bed: BedSize, span_s: float, speed: Speed) -> Numbers:
+    """Wall time of each part of the solver for a span of simulated time, on this machine [s]."""
     return {
         name: wall / getattr(speed, name) for name, wall in machine_speed.solver_seconds(bed, span_s).items()
     }
 
 
-def run_disk(case: Case, bed: Bed, span_s: float) -> float:
-    """Frames and restarts of a span of simulated time [MB]."""
+def run_disk(case: Case, bed: BedSize, span_s: float) -> float:
+    """Size of the frames and restarts of a span of simulated time [MB]."""
     frame = bed.number * disk.DUMP_COLUMNS[case["bed"]["layers"]] * disk.DOUBLE_BYTES
     restart = bed.number * disk.RESTART_BYTES_PARTICLE + bed.gas_cells * disk.RESTART_BYTES_GAS_CELL
     return (_frames(case, span_s) * frame + (_segments(case, span_s) + 1) * restart) / MEGABYTE
 
 
 def error_of(case: Case, model: str, presets: Iterable[Preset]) -> float:
-    """Measured error of a preset that gives the case the chain it has, in noise floors; NaN without one."""
+    """Measured error of the preset with the chain of the case, in noise floors; NaN without one."""
     for preset in presets:
         try:
             same = with_preset(case, preset)

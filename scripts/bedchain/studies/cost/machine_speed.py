@@ -1,9 +1,9 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""How fast the solvers and the jobs are on the machine that they were measured on, and how fast this one is.
+"""Speed of the solvers and jobs on the reference machine, and of this machine relative to it.
 
-The reference is the short and the paper's bed on two shared cores of an AMD EPYC, otherwise idle. Another
-machine is taken to be faster or slower by one factor for each solver, seen in runs of other cases that are
-here already, or else by a probe of the processor.
+Reference: the short and the paper's bed on two shared cores of an AMD EPYC, otherwise idle. Another machine
+is faster or slower by one factor for each solver, taken from runs of other cases on it or, without any, from
+a probe of the processor.
 """
 
 import json
@@ -22,19 +22,19 @@ from bedchain.dem.segments import read_parameters
 from bedchain.physics.whole_numbers import ratio
 
 SOLVERS = ("dem", "exchange", "gas")
-# Particle steps a second [1/s] of one rank, by the particles on it [1]: in a bubbling bed, and settling
+# Particle steps per second [1/s] of a rank, by its number of particles [1]: in a bubbling bed, and settling
 MOVING = ((4500, 8.3e6), (40500, 5.0e6), (81000, 5.1e6))
 SETTLING = ((4500, 6.2e6), (81000, 4.6e6))
-EXCHANGED = 9.4e6  # particles carried to the gas cells and back a second [1/s], on one rank
-GAS_STEP_S = 1.7e-3  # of a step of the gas, however few its cells
-GAS_CELL_S = 2.3e-6  # more for each cell of a rank
-SEGMENT_START_S = 0.8  # mesh, restart and frames of a segment, and the programs' start
+EXCHANGED = 9.4e6  # particles mapped to the gas cells and back per second [1/s], of a rank
+GAS_STEP_S = 1.7e-3  # of a step of the gas with few cells [s]
+GAS_CELL_S = 2.3e-6  # added for each cell of a rank [s]
+SEGMENT_START_S = 0.8  # of a segment: start of the programs, mesh, restart and frames [s]
 # Memory of the coupled solver [MB]: mpirun and Python, each rank, each particle
 RUN_MB, RANK_MB, PARTICLE_MB = 96.0, 87.0, 1.5e-3
 
 
 class Job(NamedTuple):
-    """A job that was measured from its start to its end.
+    """A job measured from its start to its end.
 
     Attributes
     ----------
@@ -51,8 +51,8 @@ class Job(NamedTuple):
     memory_mb: float
 
 
-# Of the short bed and of the paper's: the first 5.5 s of it (parsing, cells, learning), or all of its windows
-# (running the chains, which are learned 40 times more for their error bars), with cells of ten diameters
+# Of the short bed, and of the first 5.5 s of the paper's bed (parsing, cells, learning) or all of its windows
+# (running the chains, each learned 40 times more for its error bars), with cells of ten diameters
 JOBS: dict[str, tuple[Job, Job]] = {
     "parse_dumps": (Job(1_989_000, 0.58, 70), Job(17_901_000, 3.90, 83)),
     "assign_cells": (Job(1_989_000, 0.40, 90), Job(17_901_000, 0.55, 125)),
@@ -67,8 +67,8 @@ PROBE_REFERENCE_S = 4.5e-3  # processor time of a round on the reference machine
 
 
 @dataclass(frozen=True)
-class Bed:
-    """What the cost of a simulation depends on.
+class BedSize:
+    """Size of a bed, on which the cost of its simulation depends.
 
     Attributes
     ----------
@@ -87,7 +87,7 @@ class Bed:
 
 @dataclass(frozen=True)
 class Speed:
-    """This machine over the reference one [1], and how that is known.
+    """Speed of this machine over the reference machine [1], and its source.
 
     Attributes
     ----------
@@ -104,26 +104,26 @@ class Speed:
     source: str
 
 
-def bed_of(case: Case) -> Bed:
-    """What the cost of a checked case depends on."""
+def bed_of(case: Case) -> BedSize:
+    """Size of the bed of a checked case."""
     bed, time_, cell = case["bed"], case["time"], case["gas"]["cell_size_m"]
     deep = max(1, round(bed["thickness_m"] / cell)) if bed["layers"] == "many" else 1
     cells = int(ratio(bed["width_m"], cell) * ratio(bed["height_m"], cell)) * deep
     coupled = case["gas"]["model"] != "none"
     number, ranks = case["particles"]["number"], case["run"]["ranks"]
-    return Bed(number, ranks, cells if coupled else 0, time_["dem_step_s"], time_["gas_step_s"])
+    return BedSize(number, ranks, cells if coupled else 0, time_["dem_step_s"], time_["gas_step_s"])
 
 
-def solver_seconds(bed: Bed, span_s: float, cores: int | None = None) -> dict[str, float]:
+def solver_seconds(bed: BedSize, span_s: float, cores: int | None = None) -> dict[str, float]:
     """Wall time of each part of the solver on the reference machine, for a span of simulated time.
 
     Parameters
     ----------
-    bed : Bed
+    bed : BedSize
     span_s : float
         [s].
     cores : int, optional
-        That the ranks share; those of this machine by default.
+        Shared by the ranks; by default all of this machine.
 
     Returns
     -------
@@ -143,20 +143,20 @@ def solver_seconds(bed: Bed, span_s: float, cores: int | None = None) -> dict[st
     }
 
 
-def settling_seconds(bed: Bed, span_s: float, cores: int | None = None) -> float:
+def settling_seconds(bed: BedSize, span_s: float, cores: int | None = None) -> float:
     """Wall time of settling on the reference machine [s]; arguments as `solver_seconds`."""
     at_once = min(bed.ranks, cores or len(os.sched_getaffinity(0)))
     return bed.number * span_s / bed.dem_step_s / (at_once * per_rank(SETTLING, bed))
 
 
-def per_rank(measured: tuple[tuple[float, float], ...], bed: Bed) -> float:
-    """Particle steps a second of a rank, between beds that were measured and constant beyond them [1/s]."""
+def per_rank(measured: tuple[tuple[float, float], ...], bed: BedSize) -> float:
+    """Particle steps per second of a rank, interpolated between measured beds, constant beyond them [1/s]."""
     sizes, rates = np.array(measured).T
     return float(np.interp(np.log(bed.number / bed.ranks), np.log(sizes), rates))
 
 
 def job_cost(name: str, work: float) -> tuple[float, float]:
-    """Wall time [s] and memory [MB] of a job on the reference machine: a line through two measured ones.
+    """Wall time [s] and memory [MB] of a job on the reference machine, by a line through two measurements.
 
     Parameters
     ----------
@@ -180,42 +180,42 @@ def job_cost(name: str, work: float) -> tuple[float, float]:
 
 
 def simulated_here(dem: Path) -> dict[str, Any] | None:
-    """The manifest of a run whose segments are here; None for one out of an archive, timed elsewhere."""
+    """Manifest of a run whose segments are here; None for a run from an archive, timed elsewhere."""
     try:
-        found = json.loads(dem.read_text(encoding="utf-8"))
-        here = (dem.parent / found["segments"][0]["folder"]).exists()
+        manifest = json.loads(dem.read_text(encoding="utf-8"))
+        here = (dem.parent / manifest["segments"][0]["folder"]).exists()
     except (OSError, ValueError, KeyError, IndexError):
         return None
-    return dict(found) if here else None
+    return dict(manifest) if here else None
 
 
-def calibrate(runs: Iterable[Path], bed: Bed) -> Speed:
-    """Speed of this machine, by the run of another case nearest in size, or by a probe.
+def calibrate(runs: Iterable[Path], bed: BedSize) -> Speed:
+    """Speed of this machine, by the run of the other case nearest in size, or by a probe.
 
     Parameters
     ----------
     runs : iterable of Path
         ``dem.json`` of other cases.
-    bed : Bed
-        That is to be estimated.
+    bed : BedSize
+        To be estimated.
 
     Returns
     -------
     Speed
     """
     jobs = probe_speed()
-    known = [(dem, found) for dem in runs if (found := simulated_here(dem))]
+    known = [(dem, manifest) for dem in runs if (manifest := simulated_here(dem))]
     if not known:
         return Speed(jobs, jobs, jobs, jobs, f"a probe of the processor, {jobs:.2f} of the reference machine")
-    dem, found = min(known, key=lambda item: abs(np.log(item[1]["number"] / bed.number)))
+    dem, manifest = min(known, key=lambda item: abs(np.log(item[1]["number"] / bed.number)))
     given = read_parameters(dem.parent / "parameters.lig")
     cells = int(np.prod([float(given[f"gas_cells_{axis}"]) for axis in "xyz"]))
-    spent = {name: sum(segment[f"{name}_s"] for segment in found["segments"]) for name in SOLVERS}
-    like = Bed(
-        found["number"], found["ranks"], cells if spent["gas"] else 0,
+    spent = {name: sum(segment[f"{name}_s"] for segment in manifest["segments"]) for name in SOLVERS}
+    like = BedSize(
+        manifest["number"], manifest["ranks"], cells if spent["gas"] else 0,
         float(given["dem_step"]), float(given["gas_step"]),
     )  # fmt: skip
-    span_s = sum(segment["end_s"] - segment["start_s"] for segment in found["segments"])
+    span_s = sum(segment["end_s"] - segment["start_s"] for segment in manifest["segments"])
     wanted = solver_seconds(like, span_s)
     factors = {name: wanted[name] / spent[name] if spent[name] else jobs for name in SOLVERS}
     about = f"the run of {dem.parent.name} (particles at {factors['dem']:.2f}, gas at {factors['gas']:.2f}"
@@ -223,9 +223,9 @@ def calibrate(runs: Iterable[Path], bed: Bed) -> Speed:
 
 
 def probe_speed() -> float:
-    """Speed of this processor over the reference one [1], by a pass over pairs of particles as DEM makes.
+    """Speed of this processor over the reference [1], by passes over pairs of particles as in a DEM.
 
-    Processor time, so that other programs hardly change it; the fastest of several passes.
+    It is the processor time of the fastest pass, which other programs hardly change.
     """
     rng = np.random.default_rng(1)
     places = rng.random((PROBE_PARTICLES, 2))

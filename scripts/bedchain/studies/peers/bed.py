@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""The bed that all codes run: a case's numbers, and particles in motion that the project's own decks made."""
+"""The bed that all codes run: the numbers of a case, and moving particles from the decks of this project."""
 
 import hashlib
 import shutil
@@ -26,8 +26,8 @@ START = "start.npy"
 
 
 @dataclass(frozen=True)
-class Bed:
-    """A bed at the moment from which every code runs it.
+class PeerBed:
+    """A bed at the time from which every code runs it.
 
     Attributes
     ----------
@@ -36,7 +36,7 @@ class Bed:
     parameters : list of Parameter
         Of the solvers.
     particles : (n, 5) ndarray
-        x, z [m], vx, vz [m/s] and diameter [m]; they do not spin and contacts have no history.
+        x, z [m], vx, vz [m/s] and diameter [m]; without spin and history of contacts.
     """
 
     name: str
@@ -45,7 +45,7 @@ class Bed:
 
     @property
     def stamp(self) -> str:
-        """Name for its numbers and particles: the same ones have the same."""
+        """Digest of the numbers and particles."""
         digest = hashlib.sha256(np.ascontiguousarray(self.particles).tobytes())
         digest.update(liggghts_text(self.parameters).encode())
         return digest.hexdigest()[:STAMP_DIGITS]
@@ -65,13 +65,17 @@ class Bed:
         """Whole gas steps in a time, at least two."""
         return max(2, round(duration_s / self.value("gas_step")))
 
+    def end_time(self, duration_s: float) -> float:
+        """Time at the end of `gas_steps` of a time [s]."""
+        return round(self.gas_steps(duration_s) * self.value("gas_step"), 9)
+
     def dem_steps(self, duration_s: float) -> int:
-        """Steps of the particles in that many whole gas steps."""
+        """Steps of the particles in `gas_steps` of a time."""
         return self.gas_steps(duration_s) * int(self.value("coupling_steps"))
 
 
 def with_numbers(parameters: list[Parameter], **numbers: float | str) -> list[Parameter]:
-    """Parameters with some replaced by name, and those added that no case file gives."""
+    """Parameters with some replaced by name, and new ones added."""
     left = dict(numbers)
     changed = [
         replace(item, value=left.pop(item.name), source="the comparison") if item.name in left else item
@@ -80,42 +84,40 @@ def with_numbers(parameters: list[Parameter], **numbers: float | str) -> list[Pa
     return changed + [Parameter(name, value, "-", "the comparison") for name, value in left.items()]
 
 
-def write_inputs(bed: Bed, folder: Path, **numbers: float | str) -> None:
-    """Empty a folder and write the bed's parameters, for both kinds of solver, and its particles into it.
+def write_inputs(bed: PeerBed, folder: Path, **numbers: float | str) -> None:
+    """Empty a folder and write parameters for both kinds of solver and the particles of a bed into it.
 
     Parameters
     ----------
-    bed : Bed
+    bed : PeerBed
     folder : Path
         Gets ``parameters.lig``, ``caseParameters`` and ``particles.data``.
     **numbers
-        Replace parameters of these names, or add to them.
+        Parameters to replace or add.
     """
     shutil.rmtree(folder, ignore_errors=True)
     folder.mkdir(parents=True)
-    parameters = with_numbers(bed.parameters, frozen=0, **numbers)
-    (folder / "parameters.lig").write_text(liggghts_text(parameters), encoding="utf-8")
-    (folder / "caseParameters").write_text(openfoam_text(parameters), encoding="utf-8")
+    parameters = write_parameters(bed, folder, frozen=0, **numbers)
     write_particles(folder / "particles.data", bed.particles, {item.name: item.value for item in parameters})
 
 
-def fluidized_bed(case_file: Path, folder: Path, solver: Path, start_s: float) -> Bed:
-    """The bed of a case in motion: settled without gas, then run by bedFoam up to a time; kept once made.
+def fluidized_bed(case_file: Path, folder: Path, solver: Path, start_s: float) -> PeerBed:
+    """The bed of a case in motion: settled without gas, then run by bedFoam up to a time, or from the folder.
 
     Parameters
     ----------
     case_file : Path
         ``case.yaml``.
     folder : Path
-        Keeps what was made, under a stamp of the inputs.
+        Keeps the settled and the moving bed, under a stamp of the inputs.
     solver : Path
         bedFoam.
     start_s : float
-        Simulated time from the start of the gas, with the case's own ramp [s].
+        Simulated time from the start of the gas, with the ramp of the case [s].
 
     Returns
     -------
-    Bed
+    PeerBed
         Positions and velocities at that time.
 
     Raises
@@ -123,15 +125,19 @@ def fluidized_bed(case_file: Path, folder: Path, solver: Path, start_s: float) -
     UserError
         The bed is more than one layer thick.
     """
-    bed = Bed(case_file.parent.name, solver_parameters(load_case(case_file), load_schema()), np.empty((0, 5)))
+    bed = PeerBed(
+        case_file.parent.name, solver_parameters(load_case(case_file), load_schema()), np.empty((0, 5))
+    )
     if bed.value("depth_walls"):
         raise UserError(f"{case_file}: bed.layers: the comparison runs beds of one layer; take another case")
     folder.mkdir(parents=True, exist_ok=True)
-    given = folder / "parameters.lig"
-    given.write_text(liggghts_text(bed.parameters), encoding="utf-8")
+    parameters = folder / "parameters.lig"
+    parameters.write_text(liggghts_text(bed.parameters), encoding="utf-8")
     includes = sorted((DECKS / "include").glob("*.in"))
-    settled = folder / f"{SETTLED}_{input_stamp([given, DECKS / 'in.settle', *includes], 1)}"
-    moving = folder / f"{MOVING}_{input_stamp([given, DECKS / 'in.fluidize', *includes], 1, f'{start_s:g}')}"
+    settled = folder / f"{SETTLED}_{input_stamp([parameters, DECKS / 'in.settle', *includes], 1)}"
+    moving = (
+        folder / f"{MOVING}_{input_stamp([parameters, DECKS / 'in.fluidize', *includes], 1, f'{start_s:g}')}"
+    )
     if not settled.exists():
         with atomic_folder(settled) as part:
             _settle(bed, part)
@@ -141,37 +147,65 @@ def fluidized_bed(case_file: Path, folder: Path, solver: Path, start_s: float) -
     return replace(bed, particles=np.load(moving / START))
 
 
-def _write_parameters(bed: Bed, folder: Path, frame_steps: int) -> Path:
-    """Parameters for both solvers, with binary frames after so many steps; the file for the decks."""
-    parameters = with_numbers(bed.parameters, frame_steps=frame_steps, dump_suffix="bin")
-    (folder / "caseParameters").write_text(openfoam_text(parameters), encoding="utf-8")
+def write_parameters(bed: PeerBed, folder: Path, **numbers: float | str) -> list[Parameter]:
+    """Write ``parameters.lig`` and ``caseParameters`` of a bed with some numbers replaced or added."""
+    parameters = with_numbers(bed.parameters, **numbers)
     (folder / "parameters.lig").write_text(liggghts_text(parameters), encoding="utf-8")
-    return folder / "parameters.lig"
+    (folder / "caseParameters").write_text(openfoam_text(parameters), encoding="utf-8")
+    return parameters
 
 
-def _settle(bed: Bed, folder: Path) -> None:
+def solver_settings(
+    bed: PeerBed,
+    folder: Path,
+    duration_s: float,
+    deck: str,
+    restart: Path,
+    ranks: int = 1,
+    row_every: int = 10,
+) -> dict[str, object]:
+    """Settings of a run of bedFoam from time 0, for `prepare_gas`.
+
+    Parameters
+    ----------
+    bed : PeerBed
+    folder : Path
+        Of the parameters and the output.
+    duration_s : float
+        Simulated time [s].
+    deck : str
+        Below `DECKS`.
+    restart : Path
+        Particles at the start.
+    ranks, row_every : int
+        MPI ranks; gas steps to a row of bed_series.csv.
+    """
+    return {
+        "ranks": ranks,
+        "start_time": 0,
+        "end_time": bed.end_time(duration_s),
+        "start_step": 0,
+        "row_every": row_every,
+        "deck": str(DECKS / deck),
+        "decks": str(DECKS),
+        "parameters": str(folder / "parameters.lig"),
+        "restart": str(restart),
+        "output": str(folder),
+    }
+
+
+def _settle(bed: PeerBed, folder: Path) -> None:
     """Let the particles fall and come to rest."""
-    parameters = _write_parameters(bed, folder, int(bed.value("settle_steps")))
-    variables = {"parameters": parameters, "output": folder, "decks": DECKS}
+    write_parameters(bed, folder, frame_steps=int(bed.value("settle_steps")), dump_suffix="bin")
+    variables = {"parameters": folder / "parameters.lig", "output": folder, "decks": DECKS}
     run_deck(DECKS / "in.settle", variables, folder / "liggghts.log")
 
 
-def _moving_particles(bed: Bed, settled: Path, folder: Path, solver: Path, start_s: float) -> np.ndarray:
+def _moving_particles(bed: PeerBed, settled: Path, folder: Path, solver: Path, start_s: float) -> np.ndarray:
     """Run bedFoam; x, z, vx, vz and diameter of each particle at the end, (n, 5)."""
     steps = bed.dem_steps(start_s)
-    parameters = _write_parameters(bed, folder, steps)
-    settings: dict[str, object] = {
-        "ranks": 1,
-        "start_time": 0,
-        "end_time": round(bed.gas_steps(start_s) * bed.value("gas_step"), 9),
-        "start_step": 0,
-        "row_every": 10,
-        "deck": str(DECKS / "in.fluidize"),
-        "decks": str(DECKS),
-        "parameters": str(parameters),
-        "restart": str(settled / RESTART),
-        "output": str(folder),
-    }
+    write_parameters(bed, folder, frame_steps=steps, dump_suffix="bin")
+    settings = solver_settings(bed, folder, start_s, "in.fluidize", settled / RESTART)
     prepare_gas(folder / "gas", folder / "caseParameters", settled, settings)
     run_logged([str(solver), "-case", str(folder / "gas")], folder / "bedFoam.log")
     values = read_dump(folder / f"frame_{steps}.bin", COLUMNS[0]).values

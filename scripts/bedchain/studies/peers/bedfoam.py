@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""bedFoam on one rank and on two, with the project's own decks and gas."""
+"""bedFoam on one rank and on two, with the decks and the gas of this project."""
 
 import math
 from functools import partial
@@ -9,33 +9,22 @@ import pandas as pd
 
 from bedchain.dem.gas_case import GAS_CASE, GAS_PARTS, prepare_gas
 from bedchain.dem.processes import Progress, on_ranks, run_logged
-from bedchain.studies.peers.bed import DECKS, OWN_DECKS, Bed, write_inputs
+from bedchain.studies.peers.bed import OWN_DECKS, PeerBed, solver_settings, write_inputs
 from bedchain.studies.peers.peer import Outcome, Peer
 
 NO_RAMP_S = 1e-9  # full velocity from the first gas step on
 
 
-def run(bed: Bed, folder: Path, duration_s: float, solver: Path, ranks: int) -> Outcome:
-    """Run bedFoam at the case's full gas velocity, on so many ranks."""
+def run(bed: PeerBed, folder: Path, duration_s: float, solver: Path, ranks: int) -> Outcome:
+    """Run bedFoam at the case's full gas velocity, on a number of ranks."""
     steps = bed.dem_steps(duration_s)
     write_inputs(bed, folder, frame_steps=steps, ramp_time=NO_RAMP_S)
-    end_s = round(bed.gas_steps(duration_s) * bed.value("gas_step"), 9)
-    settings: dict[str, object] = {
-        "ranks": ranks,
-        "start_time": 0,
-        "end_time": end_s,
-        "start_step": 0,
-        "row_every": 1,
-        "deck": str(DECKS / "verify/in.exchange"),
-        "decks": str(DECKS),
-        "parameters": str(folder / "parameters.lig"),
-        "restart": str(folder / "particles.data"),
-        "output": str(folder),
-    }
+    particles = folder / "particles.data"
+    settings = solver_settings(bed, folder, duration_s, "verify/in.exchange", particles, ranks, row_every=1)
     gas = folder / "gas"
     prepare_gas(gas, folder / "caseParameters", folder / "nothing", settings)
     command = [str(solver), "-case", str(gas)] + (["-parallel"] if ranks > 1 else [])
-    report = Progress(end_s, every_s=math.inf)  # its totals are wanted, not its lines
+    report = Progress(bed.end_time(duration_s), every_s=math.inf)  # for its totals, without lines
     run_logged(on_ranks(command, ranks), folder / "bedFoam.log", report)
     series = pd.read_csv(gas / "bed_series.csv")
     spent, last = report.totals, series.iloc[-1]

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""OpenFOAM's own DPMFoam: particles and gas, with its collision model and its rule for the collision step."""
+"""DPMFoam of OpenFOAM: particles and gas, with its collision model and its rule for the collision step."""
 
 import math
 import re
@@ -11,13 +11,13 @@ import numpy as np
 
 from bedchain.dem.processes import run_logged
 from bedchain.errors import UserError
-from bedchain.studies.peers.bed import Bed, write_inputs
+from bedchain.studies.peers.bed import PeerBed, write_inputs
 from bedchain.studies.peers.peer import Outcome, Peer
 
 CASE = Path("scripts/bedchain/studies/peers/inputs/dpmfoam")
 CLOUD = Path("lagrangian/kinematicCloud")
 SUBCYCLES = re.compile(r"^ +(\d+) move-collide subCycles")
-SLOW_M_S = 0.1  # a bed at rest is soon as fast
+SLOW_M_S = 0.1  # least speed for the rule, which a bed at rest soon reaches
 HERTZ_TIME = 5.429675  # of DPMFoam's collision time, R (density / (E* sqrt(U)))^0.4
 HEADER = "FoamFile\n{{\n version 2.0;\n format ascii;\n class {kind};\n object {name};\n}}\n"
 NO_RECORDS = ("PairAccessed", "PairOrigProcOfOther", "PairOrigIdOfOther", "PairData")
@@ -40,12 +40,12 @@ def dashpot(restitution: float) -> float:
     return math.sqrt(5) * -logarithm / math.hypot(logarithm, math.pi)
 
 
-def resolution(bed: Bed, fastest: float) -> float:
-    """``collisionResolutionSteps`` for which DPMFoam's rule takes the particles' step of the bed [1].
+def resolution(bed: PeerBed, fastest: float) -> float:
+    """``collisionResolutionSteps`` with which DPMFoam takes the particle step of the bed [1].
 
     Parameters
     ----------
-    bed : Bed
+    bed : PeerBed
     fastest : float
         Speed of the fastest particle [m/s]; the rule doubles it.
     """
@@ -63,12 +63,12 @@ def write_field(folder: Path, name: str, kind: str, content: str) -> None:
     (folder / name).write_text(text, encoding="utf-8")
 
 
-def write_cloud(bed: Bed, start: Path) -> None:
+def write_cloud(bed: PeerBed, start: Path) -> None:
     """The particles as DPMFoam's cloud, without contact history.
 
     Parameters
     ----------
-    bed : Bed
+    bed : PeerBed
     start : Path
         Folder of the first time.
     """
@@ -102,7 +102,7 @@ def write_cloud(bed: Bed, start: Path) -> None:
 
 
 class Report:
-    """Takes DPMFoam's lines: wall time at the end of each gas step, and the sub-steps of the particles."""
+    """Wall times at the end of each gas step, and sub-steps of the particles, from the lines of DPMFoam."""
 
     def __init__(self) -> None:
         self.ends: list[float] = []
@@ -112,8 +112,8 @@ class Report:
         """Take one line of the log."""
         if line.startswith("ExecutionTime"):
             self.ends.append(time.monotonic())
-        elif found := SUBCYCLES.match(line):
-            self.subcycles.append(int(found[1]))
+        elif match := SUBCYCLES.match(line):
+            self.subcycles.append(int(match[1]))
 
 
 def inlet_pressure(gas: Path) -> np.ndarray:
@@ -137,10 +137,10 @@ def heights(gas: Path, end_s: float) -> np.ndarray:
     return np.array(places, float)
 
 
-def run(bed: Bed, folder: Path, duration_s: float) -> Outcome:
-    """Run DPMFoam at full gas velocity; its first gas step, which meets the gas at rest, is not timed."""
+def run(bed: PeerBed, folder: Path, duration_s: float) -> Outcome:
+    """Run DPMFoam at full gas velocity; its first gas step, from gas at rest, is not timed."""
     count = bed.gas_steps(duration_s)
-    end_s = round(count * bed.value("gas_step"), 9)
+    end_s = bed.end_time(duration_s)
     fastest = float(np.hypot(bed.particles[:, 2], bed.particles[:, 3]).max())
     numbers = {
         "dashpot": dashpot(bed.value("restitution")),
@@ -161,14 +161,14 @@ def run(bed: Bed, folder: Path, duration_s: float) -> Outcome:
     run_logged(["DPMFoam", "-case", str(gas)], folder / "DPMFoam.log", report)
     final = heights(gas, end_s)
     drop = bed.value("gas_density") * inlet_pressure(gas)[count // 2 :].mean()
-    own_weight = bed.value("gas_density") * bed.value("gravity") * bed.value("height")
+    gas_weight = bed.value("gas_density") * bed.value("gravity") * bed.value("height")
     return Outcome(
         end_s - bed.value("gas_step"),
         report.ends[-1] - report.ends[0],
         len(final),
         sum(report.subcycles[1:]),
         float(final.mean()),
-        float(drop - own_weight),
+        float(drop - gas_weight),
     )
 
 

@@ -7,7 +7,7 @@ from pathlib import Path
 
 from bedchain.dem.processes import run_logged
 from bedchain.errors import UserError
-from bedchain.studies.peers.bed import Bed, write_inputs
+from bedchain.studies.peers.bed import PeerBed, write_inputs
 from bedchain.studies.peers.liggghts import loop_time
 from bedchain.studies.peers.peer import Outcome, Peer
 
@@ -45,7 +45,7 @@ def last_height(log: Path) -> float:
     return float(tables[-1].strip().splitlines()[-1].split()[3])
 
 
-def run(bed: Bed, folder: Path, duration_s: float) -> Outcome:
+def run(bed: PeerBed, folder: Path, duration_s: float) -> Outcome:
     """Run the deck of LAMMPS."""
     write_inputs(bed, folder, tangential_dashpot=tangential_dashpot(bed.value("poisson")))
     values = {

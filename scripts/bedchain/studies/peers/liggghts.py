@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""LIGGGHTS on the particles alone, with the project's own decks: the limit of what bedFoam can reach."""
+"""LIGGGHTS on the particles alone, with the decks of this project: the upper limit for bedFoam."""
 
 import re
 from pathlib import Path
@@ -7,7 +7,7 @@ from pathlib import Path
 from bedchain.dem.particle_files import read_frames
 from bedchain.dem.processes import run_deck
 from bedchain.errors import UserError
-from bedchain.studies.peers.bed import DECKS, OWN_DECKS, Bed, write_inputs
+from bedchain.studies.peers.bed import DECKS, OWN_DECKS, PeerBed, write_inputs
 from bedchain.studies.peers.peer import Outcome, Peer
 
 LOOP = re.compile(r"^Loop time of (\S+) on \d+ procs for (\d+) steps with (\d+) atoms", re.MULTILINE)
@@ -19,16 +19,16 @@ def loop_time(log: Path) -> tuple[float, int, int]:
     Raises
     ------
     UserError
-        The log tells of no finished run.
+        The log holds no finished run.
     """
-    found = LOOP.findall(log.read_text(encoding="utf-8", errors="replace"))
-    if not found:
-        raise UserError(f"{log} tells of no finished run: its last lines say why")
-    wall, steps, particles = found[-1]
+    loops = LOOP.findall(log.read_text(encoding="utf-8", errors="replace"))
+    if not loops:
+        raise UserError(f"{log} holds no finished run: its last lines say why")
+    wall, steps, particles = loops[-1]
     return float(wall), int(steps), int(particles)
 
 
-def run(bed: Bed, folder: Path, duration_s: float) -> Outcome:
+def run(bed: PeerBed, folder: Path, duration_s: float) -> Outcome:
     """Run ``in.contact``, which gives frames at the start and at the end."""
     steps = bed.dem_steps(duration_s)
     write_inputs(bed, folder, frame_steps=steps)

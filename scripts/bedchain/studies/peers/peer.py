@@ -1,24 +1,24 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""What one code is, and what one run of it leaves behind."""
+"""A code of the comparison, and the outcome of its run."""
 
 from collections.abc import Callable
 from dataclasses import dataclass
 from math import nan
 from pathlib import Path
 
-from bedchain.studies.peers.bed import Bed
+from bedchain.studies.peers.bed import PeerBed
 
 
 @dataclass(frozen=True)
 class Outcome:
-    """One run, without start and end of the program.
+    """Outcome of a run, without start and end of the program.
 
     Attributes
     ----------
     simulated_s : float
-        Simulated time that was timed [s].
+        Simulated time of the timed part [s].
     wall_s : float
-        Wall time that it took [s].
+        Wall time of the timed part [s].
     particles : int
         Particles at the end [1].
     dem_steps : int
@@ -26,9 +26,9 @@ class Outcome:
     mean_height_m : float
         Mean height of the particles' centres at the end [m].
     pressure_drop : float
-        Mean over the second half of the run, without the gas's own weight [Pa]; NaN without gas.
+        Mean over the second half of the run, less the weight of the gas [Pa]; NaN without gas.
     dem_s, exchange_s, gas_s : float
-        Split of the wall time, where the code tells it [s].
+        Split of the wall time, where the code gives it [s].
     """
 
     simulated_s: float
@@ -51,19 +51,19 @@ class Peer:
     name : str
         In the table.
     program : str
-        Looked for on the path, or a file.
+        Name on the path, or a file.
     package : str
-        Debian package that holds it; empty for the project's own.
+        Debian package; empty for bedFoam.
     gas : bool
         Whether it solves the gas too.
     differences : str
-        What it does not do as bedFoam does.
+        Differences from bedFoam.
     run : callable
-        Bed, folder that it may empty, and simulated time [s] to an `Outcome`.
+        Takes the bed, a folder that it may empty and the simulated time [s], returns an `Outcome`.
     cost_s : float
-        Wall time of one particle's step, roughly [s]: long runs are cut by it, nothing else uses it.
+        Wall time of one particle's step, roughly [s]; only to cut long runs.
     files : tuple of Path
-        Files and folders of inputs of its own; where they change, its runs are made again.
+        Input files and folders of this code; where they change, its runs are repeated.
     ranks : int
         MPI ranks.
     """
@@ -73,7 +73,7 @@ class Peer:
     package: str
     gas: bool
     differences: str
-    run: Callable[[Bed, Path, float], Outcome]
+    run: Callable[[PeerBed, Path, float], Outcome]
     cost_s: float
     files: tuple[Path, ...]
     ranks: int = 1

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Figure of the comparison: wall time per simulated second of each code, a mark a bed."""
+"""Figure of the comparison: wall time per simulated second of each code, with a mark for each bed."""
 
 from pathlib import Path
 
@@ -20,7 +20,7 @@ def draw(table: pd.DataFrame, stem: Path) -> None:
     Parameters
     ----------
     table : DataFrame
-        Of `bedchain.peers.table.summary`.
+        Of `table.summary`.
     stem : Path
         Without suffix.
     """
@@ -28,13 +28,15 @@ def draw(table: pd.DataFrame, stem: Path) -> None:
     codes = list(dict.fromkeys(done["code"]))[::-1]
     with figure_style():
         figure, axes = plt.subplots(figsize=(DOUBLE_COLUMN_IN / 1.4, 0.32 * len(codes) + 1))
-        for (name, own), colour, shape in zip(done.groupby("bed", sort=False), COLOURS, SHAPES, strict=False):
-            middle = own["wall_s_per_simulated_s"].to_numpy()
-            ends = own[["fastest_s_per_simulated_s", "slowest_s_per_simulated_s"]].to_numpy().T
+        for (name, of_bed), colour, shape in zip(
+            done.groupby("bed", sort=False), COLOURS, SHAPES, strict=False
+        ):
+            middle = of_bed["wall_s_per_simulated_s"].to_numpy()
+            ends = of_bed[["fastest_s_per_simulated_s", "slowest_s_per_simulated_s"]].to_numpy().T
             axes.errorbar(
-                middle, [codes.index(code) for code in own["code"]], xerr=np.abs(ends - middle), fmt=shape,
+                middle, [codes.index(code) for code in of_bed["code"]], xerr=np.abs(ends - middle), fmt=shape,
                 color=colour, markersize=5, capsize=2,
-                label=f"{name}, {own['particles'].max():.0f} particles",
+                label=f"{name}, {of_bed['particles'].max():.0f} particles",
             )  # fmt: skip
         axes.set_xscale("log")
         gas = set(done.dropna(subset="gas_step_s")["code"])

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""What the runs say: one row a bed and code, the ratios that were asked for, and both in markdown."""
+"""Tables of the comparison: a row for each bed and code, ratios between codes, and both in markdown."""
 
 from collections.abc import Iterable
 
@@ -7,11 +7,11 @@ import numpy as np
 import pandas as pd
 
 from bedchain.provenance import debian_packages
-from bedchain.studies.peers.bed import Bed
+from bedchain.studies.peers.bed import PeerBed
 from bedchain.studies.peers.peer import Peer
-from bedchain.studies.peers.study import Run
+from bedchain.studies.peers.study import PeerRun
 
-BUSY = 0.2  # processors that others use, above which a time says little
+BUSY = 0.2  # processors used by other programs, above which a time is unreliable
 GAS_SHARE, TWO_RANKS, FASTER = 0.2, 1.6, 5.0  # targets for a bed as large as the paper's
 LARGE = 81_000  # particles
 SHOWN = {
@@ -27,13 +27,13 @@ SHOWN = {
 }
 
 
-def summary(runs: Iterable[Run], beds: dict[str, Bed], peers: Iterable[Peer]) -> pd.DataFrame:
-    """Medians over the repeats, one row a bed and code.
+def summary(runs: Iterable[PeerRun], beds: dict[str, PeerBed], peers: Iterable[Peer]) -> pd.DataFrame:
+    """Medians over the repeats, with a row for each bed and code.
 
     Parameters
     ----------
-    runs : iterable of Run
-    beds : dict of str to Bed
+    runs : iterable of PeerRun
+    beds : dict of str to PeerBed
         By name.
     peers : iterable of Peer
         In the order of the table.
@@ -41,23 +41,23 @@ def summary(runs: Iterable[Run], beds: dict[str, Bed], peers: Iterable[Peer]) ->
     Returns
     -------
     DataFrame
-        Units stand in the names of the columns; a code without a run has its reason in ``note``.
+        Units in the names of the columns; ``note`` has the reason where a code has no run.
     """
     runs, peers = list(runs), list(peers)
     rows = []
     for name, bed in beds.items():
         for peer in peers:
-            own = [run for run in runs if (run.bed, run.code) == (name, peer.name)]
-            if own:
-                rows.append(_row(own, bed, peer))
+            of_peer = [run for run in runs if (run.bed, run.code) == (name, peer.name)]
+            if of_peer:
+                rows.append(_row(of_peer, bed, peer))
     table = pd.DataFrame(rows)
-    own_time = table[table["code"] == "bedFoam"].set_index("bed")["wall_s_per_simulated_s"]
-    relative = table["wall_s_per_simulated_s"] / table["bed"].map(own_time)
+    bedfoam_time = table[table["code"] == "bedFoam"].set_index("bed")["wall_s_per_simulated_s"]
+    relative = table["wall_s_per_simulated_s"] / table["bed"].map(bedfoam_time)
     table.insert(table.columns.get_loc("wall_s_per_simulated_s") + 1, "relative_to_bedfoam_1", relative)
     return table
 
 
-def _row(runs: list[Run], bed: Bed, peer: Peer) -> dict[str, object]:
+def _row(runs: list[PeerRun], bed: PeerBed, peer: Peer) -> dict[str, object]:
     done = [run.outcome for run in runs if run.outcome]
     frame = pd.DataFrame([vars(outcome) for outcome in done] or [{}], dtype=float)
     frame = frame.reindex(columns=list(_FIELDS))
@@ -108,41 +108,43 @@ def ratios(table: pd.DataFrame) -> pd.DataFrame:
     Returns
     -------
     DataFrame
-        ``target`` and ``met`` are empty where nothing was asked for; without a code its ratios are left out.
+        ``target`` and ``met`` are empty where there is no target; without a code its ratios are left out.
     """
     rows = []
-    for name, own in table.groupby("bed", sort=False):
-        by_code = own.set_index("code").reindex(["bedFoam", "bedFoam, 2 ranks", "DPMFoam", "LIGGGHTS"])
-        one, two, dpm, alone = by_code["wall_s_per_simulated_s"]
-        share = by_code["gas_and_exchange_per_dem_1"].iloc[0]
+    for name, of_bed in table.groupby("bed", sort=False):
+        by_code = of_bed.set_index("code").reindex(["bedFoam", "bedFoam, 2 ranks", "DPMFoam", "LIGGGHTS"])
+        one_rank, two_ranks, dpm, alone = by_code["wall_s_per_simulated_s"]
+        gain, share = one_rank / two_ranks, by_code["gas_and_exchange_per_dem_1"].iloc[0]
         height, drop = by_code["mean_height_m"], by_code["pressure_drop_Pa"]
         rows += [
             (name, "gas and exchange over DEM, one rank [1]", share, "<= 0.2", share <= GAS_SHARE),
-            (name, "one rank's time over that of 2 ranks [1]", one / two, ">= 1.6", one / two >= TWO_RANKS),
-            (name, "DPMFoam's time over bedFoam's [1]", dpm / one, ">= 5", dpm / one >= FASTER),
-            (name, "bedFoam's time over that of LIGGGHTS alone [1]", one / alone, "", None),
+            (name, "one rank's time over that of 2 ranks [1]", gain, ">= 1.6", gain >= TWO_RANKS),
+            (name, "DPMFoam's time over bedFoam's [1]", dpm / one_rank, ">= 5", dpm / one_rank >= FASTER),
+            (name, "bedFoam's time over that of LIGGGHTS alone [1]", one_rank / alone, "", None),
             (name, "DPMFoam's mean height over bedFoam's [1]", height.iloc[2] / height.iloc[0], "", None),
             (name, "DPMFoam's pressure drop over bedFoam's [1]", drop.iloc[2] / drop.iloc[0], "", None),
         ]
-    found = pd.DataFrame(rows, columns=["bed", "quantity", "value", "target", "met"])
-    found["met"] = ["" if met is None else "yes" if met else "no" for met in found["met"]]
+    result = pd.DataFrame(rows, columns=["bed", "quantity", "value", "target", "met"])
+    result["met"] = ["" if met is None else "yes" if met else "no" for met in result["met"]]
     large = table.groupby("bed")["particles"].max() >= LARGE
-    found.loc[~found["bed"].map(large), ["target", "met"]] = ""
-    return found.dropna(subset="value", ignore_index=True)
+    result.loc[~result["bed"].map(large), ["target", "met"]] = ""
+    return result.dropna(subset="value", ignore_index=True)
 
 
-def markdown(table: pd.DataFrame, found: pd.DataFrame) -> str:
-    """Both tables for people, with what could not be run and which times are doubtful."""
+def markdown(table: pd.DataFrame, ratio_rows: pd.DataFrame) -> str:
+    """Both tables in markdown, with the codes that could not run and the times that are unreliable."""
     parts = []
-    for name, own in table.groupby("bed", sort=False):
-        lines = [_line(row) for row in own[own["repeats"] > 0].to_dict("records")]
+    for name, of_bed in table.groupby("bed", sort=False):
+        lines = [_line(row) for row in of_bed[of_bed["repeats"] > 0].to_dict("records")]
         parts += [f"{name}:\n", _grid(list(SHOWN.values()), lines), ""]
-        parts += [f"- {row.code}: {row.note}" for row in own.itertuples() if row.note]
-        busy = own[own["others_processors_1"] > BUSY]["code"]
+        parts += [f"- {row.code}: {row.note}" for row in of_bed.itertuples() if row.note]
+        busy = of_bed[of_bed["others_processors_1"] > BUSY]["code"]
         if len(busy):
             parts.append(f"- other programs were at work during {', '.join(busy)}: their times are too long")
         parts.append("")
-    shown = [[row.bed, row.quantity, f"{row.value:.4g}", row.target, row.met] for row in found.itertuples()]
+    shown = [
+        [row.bed, row.quantity, f"{row.value:.4g}", row.target, row.met] for row in ratio_rows.itertuples()
+    ]
     return "\n".join([*parts, _grid(["bed", "quantity", "value", "target", "met"], shown)])
 
 

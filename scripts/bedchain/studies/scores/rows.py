@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Scores of chains as rows of scores.csv, each beside the noise floor and with an interval over starts."""
+"""Rows of scores.csv: scores of chains with the noise floor and an interval over starts."""
 
 from collections.abc import Callable
 from typing import Any
@@ -8,8 +8,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from bedchain.measures.lagrangian import Statistics, dispersion_error
-from bedchain.studies.scores.held_out import INTERVAL_SEED, REPLICATES, HeldOut
-from bedchain.studies.scores.tested_chain import TIMES_S, Trial
+from bedchain.studies.scan import REPLICATES
+from bedchain.studies.scores.held_out import INTERVAL_SEED, HeldOut
+from bedchain.studies.scores.predictions import TIMES_S, Predictions
 from bedchain.uncertainty.bands import band
 from bedchain.uncertainty.deviations import (
     SIDES,
@@ -25,7 +26,7 @@ from bedchain.uncertainty.deviations import (
 Array = NDArray[np.float64]
 Row = dict[str, Any]
 
-# the running mean that fluctuations are about reaches as far to each side
+# half width of the running mean about which curves fluctuate [s]
 FLUCTUATION_S = 0.25
 
 
@@ -38,7 +39,7 @@ def row(
     window: str = "",
     ci: tuple[float, float] = (np.nan, np.nan),
 ) -> Row:
-    """One score.
+    """Row of one score.
 
     Parameters
     ----------
@@ -48,7 +49,7 @@ def row(
     time_s : float
         After the start; NaN for all frames together [s].
     noise_floor : float
-        What chance alone makes of the same number, by the spread of the DEM itself; NaN where unknown.
+        The same number for the spread of the DEM between realisations; NaN where unknown.
     unit, window : str
         Window as in `HeldOut.windows`.
     ci : (float, float)
@@ -65,7 +66,7 @@ def row(
 
 
 def at_times(array: Array, interval_s: float) -> list[tuple[float, Array]]:
-    """Curves at each of `TIMES_S` that they reach, and whole with the time NaN.
+    """Curves as a whole, with the time NaN, and at each of `TIMES_S` that they reach.
 
     Parameters
     ----------
@@ -79,23 +80,26 @@ def at_times(array: Array, interval_s: float) -> list[tuple[float, Array]]:
     return [(np.nan, array), *((time_s, array[:, at : at + 1]) for time_s, at in held.items())]
 
 
-def score_rows(trial: Trial, held: HeldOut) -> list[Row]:
+def score_rows(predictions: Predictions, held: HeldOut) -> list[Row]:
     """All scores of a chain, each beside the noise floor, as `row`."""
-    error, errors_of_batch = trial.curves - held.curves, distances(trial.densities, held.densities)
+    error, errors_of_batch = (
+        predictions.curves - held.curves,
+        distances(predictions.densities, held.densities),
+    )
     rows = []
     for window, which in held.windows().items():
         rows += curve_rows(error, held, window, which)
         rows += batch_rows(errors_of_batch, held, window, which)
-        rows += fluctuation_rows(trial.drawn, held, window, which)
-    rows += lagrangian_rows(*map(list, zip(*trial.lagrangian, strict=True)))
-    rows += dispersion_rows(trial.lagrangian)
-    rows += [row(name.replace("_s", "_time"), cost, unit="s") for name, cost in trial.cost_s.items()]
-    named = [(*name.rpartition("_")[::2], value) for name, value in trial.chain.report.items()]
+        rows += fluctuation_rows(predictions.drawn, held, window, which)
+    rows += lagrangian_rows(*map(list, zip(*predictions.lagrangian, strict=True)))
+    rows += dispersion_rows(predictions.lagrangian)
+    rows += [row(name.replace("_s", "_time"), cost, unit="s") for name, cost in predictions.cost_s.items()]
+    named = [(*name.rpartition("_")[::2], value) for name, value in predictions.chain.report.items()]
     return rows + [row(f"learned_{quantity}", value, unit=unit) for quantity, unit, value in named]
 
 
 def dem_rows(held: HeldOut, lagrangian: list[Statistics]) -> list[Row]:
-    """What the scores are to be held against: the noise floor itself, and the DEM's own fluctuations."""
+    """Rows of the DEM, to compare the scores with: its noise floor and its fluctuations."""
     rows = [row("repeats", len(held.runs) - 1), row("starts", len(held.starts))]
     rows += spread_rows("spread_of_starts", held.deviations_of_starts(), held, "starts")
     for window in held.windows():
@@ -105,7 +109,7 @@ def dem_rows(held: HeldOut, lagrangian: list[Statistics]) -> list[Row]:
 
 
 def spread_rows(quantity: str, deviations: Array, held: HeldOut, window: str) -> list[Row]:
-    """Size of the DEM's own deviations, at `TIMES_S` and over all frames after the start."""
+    """Rms of the deviations of the DEM, at `TIMES_S` and over all frames after the start."""
     which = held.floor_of(window)
     weights, rows = held.weights(which), []
     for side, columns in SIDES.items():
@@ -159,35 +163,35 @@ def fluctuation_rows(curves: Array, held: HeldOut, window: str, which: NDArray[n
     """
     half = max(1, round(FLUCTUATION_S / held.interval_s))
     weights, rows = held.weights(which), []
-    own, dem = (fluctuation(array[which, half:], half) for array in (curves, held.curves))
+    chain, dem = (fluctuation(array[which, half:], half) for array in (curves, held.curves))
     for side, columns in SIDES.items():
-        picked = own[:, :, columns]
+        picked = chain[:, :, columns]
         if np.isfinite(picked).any():
             rows.append(row(f"fluctuation_{side}", float(rms(picked)), np.nan, float(rms(dem[:, :, columns])),
                             window=window, ci=interval(rms, picked, weights)))  # fmt: skip
     return rows
 
 
-def lagrangian_rows(found: list[Statistics], dem: list[Statistics]) -> list[Row]:
+def lagrangian_rows(model: list[Statistics], dem: list[Statistics]) -> list[Row]:
     """Mean-square displacement and displacement autocorrelation at `TIMES_S`, in window ``start``.
 
     Parameters
     ----------
-    found, dem : list of Statistics
-        One for each run; the spread of the DEM's over the runs (over blocks of time, with one run) stands in
-        the column of the noise floor.
+    model, dem : list of Statistics
+        One for each run; the spread of the DEM over the runs (with one run over blocks of time) is the noise
+        floor.
 
     Returns
     -------
     list of dict
     """
-    run = np.repeat(np.arange(len(found)), [len(one.squared_m2) for one in found])
+    run = np.repeat(np.arange(len(model)), [len(of_run.squared_m2) for of_run in model])
     weights = resampled(run, REPLICATES, np.random.default_rng(INTERVAL_SEED))
     rows = []
     for column, axis in enumerate("xz"):
-        for time_s in [time for time in TIMES_S if time <= found[0].times_s[-1] + 1e-9]:
-            squared, product, whole = (_units(found, name, at, column) for name, at in _wanted(time_s))
-            spreads = [_units(dem, name, at, column) for name, at in _wanted(time_s)]
+        for time_s in [time for time in TIMES_S if time <= model[0].times_s[-1] + 1e-9]:
+            squared, product, whole = (_values(model, name, at, column) for name, at in _wanted(time_s))
+            spreads = [_values(dem, name, at, column) for name, at in _wanted(time_s)]
             drawn = weights / weights.sum(axis=1, keepdims=True)
             rows += [
                 row(f"msd_{axis}", squared.mean(), time_s, _spread(spreads[0], run), "m2", "start",
@@ -200,7 +204,7 @@ def lagrangian_rows(found: list[Statistics], dem: list[Statistics]) -> list[Row]
 
 
 def dispersion_rows(pairs: list[tuple[Statistics, Statistics]]) -> list[Row]:
-    """Relative error of the dispersion by height; its noise floor needs repeats.
+    """Relative error of the dispersion by height; without repeats it has no noise floor.
 
     Parameters
     ----------
@@ -214,8 +218,8 @@ def dispersion_rows(pairs: list[tuple[Statistics, Statistics]]) -> list[Row]:
     """
     errors = np.array([dispersion_error(*pair) for pair in pairs])
     dems = [dem for _, dem in pairs]
-    others = [dispersion_error(one, two) for one in dems for two in dems if one is not two]
-    # two runs differ by sqrt(2) of what one of them differs from the mean of all
+    others = [dispersion_error(first, second) for first in dems for second in dems if first is not second]
+    # two runs differ by sqrt(2) times the difference of a run from the mean of all
     floor = np.sqrt((np.array(others) ** 2).mean(axis=0) / 2) if others else np.full((2, 2), np.nan)
     rows = []
     for kind, name in enumerate(("signed", "rms")):
@@ -234,10 +238,10 @@ def _wanted(time_s: float) -> tuple[tuple[str, float], ...]:
     return ("squared_m2", time_s), ("product_m2", time_s), ("product_m2", 0.0)
 
 
-def _units(found: list[Statistics], name: str, time_s: float, column: int) -> Array:
-    """One number for each block of each run, by straight lines between the times that are there."""
+def _values(runs: list[Statistics], name: str, time_s: float, column: int) -> Array:
+    """A statistic of each block of each run, interpolated linearly in time."""
     return np.array(
-        [np.interp(time_s, one.times_s, block[:, column]) for one in found for block in getattr(one, name)]
+        [np.interp(time_s, run.times_s, block[:, column]) for run in runs for block in getattr(run, name)]
     )
 
 
@@ -246,7 +250,7 @@ def _ends(samples: Array) -> tuple[float, float]:
     return float(low), float(high)
 
 
-def _spread(units: Array, run: NDArray[np.int64]) -> float:
-    """Standard deviation of runs, or of blocks where there is one run."""
-    means = np.array([units[run == one].mean() for one in np.unique(run)])
-    return float(np.std(means if means.size > 1 else units, ddof=1))
+def _spread(values: Array, run: NDArray[np.int64]) -> float:
+    """Standard deviation of the means of runs, or of blocks with a single run."""
+    means = np.array([values[run == number].mean() for number in np.unique(run)])
+    return float(np.std(means if means.size > 1 else values, ddof=1))

@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Choosing each model's setting inside the learning window: fitted on its first part, validated on the rest.
+"""Selection of each model's setting: fitted on the first part of the learning window, validated on the rest.
 
-No frame after the learning window is touched here; a run is handed over cut at its end.
+No frame after the learning window is used: the run is cut at its end.
 """
 
 import logging
@@ -13,30 +13,27 @@ import numpy as np
 import pandas as pd
 
 from bedchain.errors import DataError, UserError
+from bedchain.studies.candidates import Candidate, grid_of
+from bedchain.studies.marked_starts import split, starts_in
 from bedchain.studies.scan import (
     Task,
     learned,
     named,
     observed_curves,
     predicted_curves,
+    rms_over_starts,
     running_cost,
     scan,
     timed,
 )
-from bedchain.studies.scores.candidates import Candidate, grid_of
-from bedchain.studies.scores.marked_starts import split, starts_in
+from bedchain.studies.scores.held_out import INTERVAL_SEED
 from bedchain.trajectory.realisations import Realisation
-from bedchain.uncertainty.deviations import interval, resampled, rms, stacked
 
 LOG = logging.getLogger(__name__)
 
-REPLICATES = 1000
-# of the intervals only: the same data give the same interval
-INTERVAL_SEED = 17
-
 
 def validated(candidate: Candidate, run: Realisation, learning: slice, task: Task) -> dict[str, Any]:
-    """Fit a candidate on the first part of the learning window and judge it on the rest.
+    """Validation of a candidate: fitted on the first part of the learning window, judged on the rest.
 
     Parameters
     ----------
@@ -51,7 +48,7 @@ def validated(candidate: Candidate, run: Realisation, learning: slice, task: Tas
     -------
     dict
         validation_rms, ci_low, ci_high (of the four curves over all starts and frames), starts, learn_s,
-        curves_s and paths_s (`running_cost`), problem (empty where all went well).
+        curves_s and paths_s (`running_cost`), problem (empty without one).
     """
     result: dict[str, Any] = {"validation_rms": np.nan, "ci_low": np.nan, "ci_high": np.nan}
     result |= {"starts": 0, "learn_s": np.nan, "curves_s": np.nan, "paths_s": np.nan, "problem": ""}
@@ -73,53 +70,51 @@ def validated(candidate: Candidate, run: Realisation, learning: slice, task: Tas
         cost = running_cost(chain, run.leading_to(chain.grid, starts[0].frame, candidate.lag), task)
     except DataError as problem:
         return result | {"problem": str(problem)}
-    error = stacked([model[1:] - dem[1:] for model, dem in pairs])
-    weights = resampled(np.zeros(len(error), np.int64), REPLICATES, np.random.default_rng(INTERVAL_SEED))
-    low, high = interval(rms, error, weights)
+    error, low, high = rms_over_starts([model[1:] - dem[1:] for model, dem in pairs], INTERVAL_SEED)
     return result | {
-        "validation_rms": float(rms(error)), "ci_low": low, "ci_high": high, "starts": len(starts),
+        "validation_rms": error, "ci_low": low, "ci_high": high, "starts": len(starts),
         "learn_s": learn_s, **cost,
     }  # fmt: skip
 
 
 def select(
-    tried: Sequence[Candidate], run: Realisation, learning: slice, task: Task, kept: Path
+    candidates: Sequence[Candidate], run: Realisation, learning: slice, task: Task, records: Path
 ) -> pd.DataFrame:
-    """Validate all candidates, and mark the best of each model and the best of all.
+    """Validation of all candidates, with the best of each model and the best of all marked.
 
     Parameters
     ----------
-    tried : sequence of Candidate
+    candidates : sequence of Candidate
     run : Realisation
     learning : slice
         Frames of the learning window.
     task : Task
-    kept : Path
-        Folder of results that are taken up again after a stop; its name stands for data and code.
+    records : Path
+        Folder of results that a stopped selection goes on from; its name stands for data and code.
 
     Returns
     -------
     DataFrame
-        A row a candidate, in their order: model, cell_m, lag_s, options, those of `validated`, chosen and
-        best (0 or 1).
+        A row for each candidate, in their order: model, cell_m, lag_s, options, those of `validated`, chosen
+        and best (0 or 1).
 
     Raises
     ------
     UserError
-        No candidate at all could be validated.
+        No candidate could be validated.
     """
     run = Realisation(
         run.name, run.values[: learning.stop], run.times_s[: learning.stop], run.width_m, run.height_m,
         run.has_velocities,
     )  # fmt: skip
     results = scan(
-        tried,
+        candidates,
         lambda candidate: validated(candidate, run, learning, task),
         lambda candidate: candidate.key,
         lambda result: result["problem"] or f"validation rms {result['validation_rms']:.4f}",
-        kept,
+        records,
     )
-    labels = [named(candidate, task.grid, run.interval_s) for candidate in tried]
+    labels = [named(candidate, task.grid, run.interval_s) for candidate in candidates]
     rows = [label | result for label, result in zip(labels, results, strict=True)]
     table = pd.DataFrame(rows)
     valid = table["validation_rms"].notna()

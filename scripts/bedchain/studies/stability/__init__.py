@@ -1,2 +1,2 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Where solvers and chains break: settings at the extremes, how each ends, and the limits by theory."""
+"""Limits of the solvers and chains: settings at extremes, their outcomes, and the limits by theory."""

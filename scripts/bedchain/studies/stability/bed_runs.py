@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Run a bed by the real solvers, and judge how it ended."""
+"""Runs of a bed by the real solvers, and their verdicts."""
 
 import re
 from collections.abc import Mapping
@@ -16,7 +16,7 @@ from bedchain.case.variants import Variant
 from bedchain.dem.variant_run import simulate
 from bedchain.errors import CaseError, UserError
 from bedchain.physics.constants import GRAVITY_M_S2
-from bedchain.studies.stability.beds import Bed, case_of, changes
+from bedchain.studies.stability.beds import StabilityBed, case_of, changes
 from bedchain.studies.stability.verdict import Verdict, judge, refused, stopped
 from bedchain.studies.verification.rows import Row
 
@@ -31,16 +31,16 @@ NOT_OURS = re.compile(r"is not installed|MB are free|is in use by process")
 
 @dataclass(frozen=True)
 class Expected:
-    """What a bed that was run is held against.
+    """Expected outcome of a run.
 
     Attributes
     ----------
     moving : bool
-        Whether it moves: then only what is carried and the height count, and those with wide tolerances.
+        Whether the bed moves; then only the weight carried and the height are checked, with wide tolerances.
     overlap : float
-        Over the diameter, that a bed at rest stays below by theory [1]; 0 where the bed moves.
+        Largest overlap of a bed at rest by theory, over the diameter [1]; 0 where the bed moves.
     reference : str
-        Setting whose mean height and gas share this one must have; empty for none.
+        Name of the setting whose mean height and gas share this one must have; empty for none.
     share_tolerance : float
         Relative, of the gas share.
     height_m : float
@@ -54,17 +54,19 @@ class Expected:
     height_m: float = 0.0
 
 
-def run_bed(folder: Path, bed: Bed, expected: Expected, known: Mapping[str, Mapping[str, float]]) -> Verdict:
+def run_bed(
+    folder: Path, bed: StabilityBed, expected: Expected, known: Mapping[str, Mapping[str, float]]
+) -> Verdict:
     """Simulate a bed to its end and judge it.
 
     Parameters
     ----------
     folder : Path
         To work in.
-    bed : Bed
+    bed : StabilityBed
     expected : Expected
     known : mapping of str to mapping
-        What was observed in other settings.
+        Observed values of other settings.
 
     Returns
     -------
@@ -73,11 +75,11 @@ def run_bed(folder: Path, bed: Bed, expected: Expected, known: Mapping[str, Mapp
     Raises
     ------
     UserError
-        A program is not installed, the disk is full, or another study is at work: nothing of the setting's.
+        A program is not installed, the disk is full, or another study is running: not due to the setting.
     """
     folder.mkdir(parents=True, exist_ok=True)
     plain = folder / "plain.yaml"
-    plain.write_text(yaml.safe_dump(case_of(Bed()), sort_keys=False), encoding="utf-8")
+    plain.write_text(yaml.safe_dump(case_of(StabilityBed()), sort_keys=False), encoding="utf-8")
     try:
         case = simulate(plain, Variant(folder.name, changes(bed)), folder, bed.ranks)
     except CaseError as error:
@@ -86,14 +88,14 @@ def run_bed(folder: Path, bed: Bed, expected: Expected, known: Mapping[str, Mapp
         if NOT_OURS.search(str(error)):
             raise
         log = folder / "simulate.log"
-        told = log.read_text(encoding="utf-8", errors="replace") if log.exists() else ""
-        return stopped(f"{told} {error}")
+        text = log.read_text(encoding="utf-8", errors="replace") if log.exists() else ""
+        return stopped(f"{text} {error}")
     observed = observe(case, pd.read_csv(folder / "bed_series.csv"))
     return judge(checks(observed, expected, known.get(expected.reference, {})), observed)
 
 
 def observe(case: Case, series: pd.DataFrame) -> dict[str, float]:
-    """What is looked at, in the second half of a run.
+    """Observed values of a run, most of them over its second half.
 
     Parameters
     ----------
@@ -113,7 +115,7 @@ def observe(case: Case, series: pd.DataFrame) -> dict[str, float]:
     energy = particles["number"] * mass * GRAVITY_M_S2 * particles["diameter_m"]
     parts = ("weight_on_gas_1", "weight_on_floor_1", "weight_on_sides_1")
     means = late.mean(skipna=False)
-    found = {
+    values = {
         "height_m": means["mean_height_m"],
         "carried_1": sum(means[part] for part in parts),
         "momentum_1": momentum(late),
@@ -126,18 +128,18 @@ def observe(case: Case, series: pd.DataFrame) -> dict[str, float]:
         "clips_1": series["voidage_clips_1"].max(skipna=False),
         "lost_1": particles["number"] - series["particles_1"].min(skipna=False),
     }
-    return {name: float(value) for name, value in found.items()}
+    return {name: float(value) for name, value in values.items()}
 
 
 def momentum(series: pd.DataFrame) -> float:
-    """What must be carried by Newton's second law, ``1 + a / g`` with the centre's mean acceleration [1]."""
+    """Share of the weight to be carried, ``1 + a / g`` with the mean acceleration of the centre [1]."""
     times, heights = series["time_s"].to_numpy(), series["mean_height_m"].to_numpy()
     speeds, middles = np.diff(heights) / np.diff(times), (times[1:] + times[:-1]) / 2
     return float(1 + (speeds[-1] - speeds[0]) / (middles[-1] - middles[0]) / GRAVITY_M_S2)
 
 
 def checks(observed: Mapping[str, float], expected: Expected, reference: Mapping[str, float]) -> list[Row]:
-    """What is asked of a run that came to its end.
+    """Checks of a run that came to its end.
 
     Parameters
     ----------
@@ -145,7 +147,7 @@ def checks(observed: Mapping[str, float], expected: Expected, reference: Mapping
         Of `observe`.
     expected : Expected
     reference : mapping of str to float
-        What was observed in the setting that it is compared with; empty for none.
+        Observed values of the setting that it is compared with; empty for none.
     """
     moving = expected.moving
     rows = [
@@ -161,17 +163,17 @@ def checks(observed: Mapping[str, float], expected: Expected, reference: Mapping
     if not moving:
         rows.append(Row("kinetic energy over m g d [1]", observed["kinetic_1"], 0, AT_REST, "bed at rest"))
     if expected.overlap:
-        told = "Hertz: 3 x at rest, or a fall of one diameter"
-        rows.append(Row("deepest overlap over d [1]", observed["overlap_1"], 0, expected.overlap, told))
+        source = "Hertz: 3 x at rest, or a fall of one diameter"
+        rows.append(Row("deepest overlap over d [1]", observed["overlap_1"], 0, expected.overlap, source))
     if expected.height_m:
         rows.append(Row("mean height [m]", observed["height_m"], expected.height_m, HEIGHT, "geometry"))
     if expected.reference:
-        # NaN where that setting came to no end: nothing can be said then, and it shows
+        # NaN where that setting did not end: the check fails then
         tolerance = HEIGHT_MOVING if moving else HEIGHT
         height = reference.get("height_m", np.nan)
         source = f"as in {expected.reference}"
         rows.append(Row("mean height [m]", observed["height_m"], height, tolerance, source))
         if not moving and reference.get("gas_share_1", 0) > AT_REST:
-            pair, near = (observed["gas_share_1"], reference["gas_share_1"]), expected.share_tolerance
-            rows.append(Row("weight on the gas [1]", *pair, near, source))
+            shares = observed["gas_share_1"], reference["gas_share_1"]
+            rows.append(Row("weight on the gas [1]", *shares, expected.share_tolerance, source))
     return rows

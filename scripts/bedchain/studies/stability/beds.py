@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Tiny beds that differ in what a setting asks for and are alike in all else, as case files."""
+"""Tiny beds of the stability study as case files, alike except for the values that a setting changes."""
 
 import math
 from dataclasses import dataclass, field
@@ -11,18 +11,18 @@ from bedchain.physics.contacts import rayleigh_time
 from bedchain.physics.scene_numbers import Scene
 from bedchain.physics.whole_numbers import nearest_multiple, ratio
 
-DIAMETER, DENSITY, YOUNG = 1e-3, 2600.0, 1.9e6  # of the paper and the schema: other beds are scaled from it
+DIAMETER, DENSITY, YOUNG = 1e-3, 2600.0, 1.9e6  # of the paper and the schema; other beds are scaled
 GAS_DENSITY, VISCOSITY, POISSON, FRICTION = 1.2, 1.8e-5, 0.3, 0.1
 USUAL_SHARE = 0.18  # of the Rayleigh time
 FRAME, SETTLE, RUN, RAMP = 4e-3, 0.15, 0.06, 0.02  # [s], of particles of 1 mm; times go with sqrt(d / g)
 GAS_STEP = 5e-4  # [s], likewise
 FEWEST_FRAMES = 8  # two windows of four
 FEWEST_GAS_STEPS = 80  # bed_series.csv has a row for ten of them
-SPLIT_DIAMETERS = 10  # height of lines that the study does not use, but a case must have
+SPLIT_DIAMETERS = 10  # height of lines that a case must have; the study does not use them
 
 
 @dataclass(frozen=True)
-class Bed:
+class StabilityBed:
     """A bed of one layer in a box; lengths other than the diameter are in diameters.
 
     Attributes
@@ -30,14 +30,14 @@ class Bed:
     diameter, density, number
         Of the particles [m], [kg/m3], [1].
     young : float, optional
-        [Pa]; by default such that the bed sags as the paper's particles do, ``E ~ rho g d``.
+        [Pa]; by default with the relative overlap of the paper's particles, ``E ~ rho g d``.
     width, height, thickness, cell : float
         Of the bed and its gas cells, in diameters.
     velocity : float
         Superficial [m/s].
     dem_step, gas_step : float, optional
-        [s], the gas's brought to a whole number of the particles'; by default a usual share of the Rayleigh
-        time, and what goes with it.
+        [s], that of the gas rounded to a whole number of the particles'; by default from the usual share of
+        the Rayleigh time.
     run, settle : float
         Simulated times [s], of particles of 1 mm.
     allowed : bool
@@ -87,8 +87,8 @@ def two_digits(value: float) -> float:
     return float(Fraction(digits) * Fraction(10) ** exponent)
 
 
-def clock(bed: Bed) -> dict[str, Any]:
-    """Section `time` of a bed: all times whole numbers of what they are made of."""
+def clock(bed: StabilityBed) -> dict[str, Any]:
+    """Section `time` of a bed; each time is a whole number of the steps that divide it."""
     gas = bed.gas_step or GAS_STEP * bed.slowness
     usual = USUAL_SHARE * rayleigh_time(bed.stiffness, POISSON, bed.density, bed.diameter / 2)
     dem = bed.dem_step or two_digits(min(usual, gas))
@@ -105,7 +105,7 @@ def clock(bed: Bed) -> dict[str, Any]:
     }  # fmt: skip
 
 
-def case_of(bed: Bed) -> dict[str, Any]:
+def case_of(bed: StabilityBed) -> dict[str, Any]:
     """Content of the case file of a bed."""
     time = clock(bed)
     frame, end = time["frame_interval_s"], time["end_s"]
@@ -145,8 +145,8 @@ def case_of(bed: Bed) -> dict[str, Any]:
     return case
 
 
-def scene(bed: Bed) -> Scene:
-    """Numbers of a bed that its limits are made of.
+def scene(bed: StabilityBed) -> Scene:
+    """Physical numbers of a bed, for its limits.
 
     Raises
     ------
@@ -158,12 +158,12 @@ def scene(bed: Bed) -> Scene:
     return scene_of(case)
 
 
-def changes(bed: Bed) -> dict[str, Any]:
-    """What differs from the plain bed, by dotted key."""
-    plain, own = case_of(Bed()), case_of(bed)
+def changes(bed: StabilityBed) -> dict[str, Any]:
+    """Differences from the plain bed, by dotted key."""
+    plain, case = case_of(StabilityBed()), case_of(bed)
     return {
         f"{section}.{key}": value
-        for section, keys in own.items()
+        for section, keys in case.items()
         if isinstance(keys, dict)
         for key, value in keys.items()
         if plain[section].get(key) != value

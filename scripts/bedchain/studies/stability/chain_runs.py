@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Learn and run a chain at an extreme, and judge it: mass, probabilities, and what is exact."""
+"""Runs of a chain at an extreme, and their checks: mass, probabilities, exact values."""
 
 from collections.abc import Callable
 from dataclasses import dataclass, field
@@ -34,7 +34,7 @@ COLLAPSED = 0.2  # total variation between the long-run density and that of the 
 
 @dataclass(frozen=True)
 class ChainCase:
-    """What a chain is learned from, and what is asked of it.
+    """Data that a chain is learned from, and its run.
 
     Attributes
     ----------
@@ -42,7 +42,7 @@ class ChainCase:
         The learning window.
     grid : Grid
     start : Frames
-        What leads up to the start.
+        Frames up to the start.
     lag : int
         Frames in a step.
     steps : int
@@ -65,14 +65,14 @@ class ChainCase:
 def run_chain(
     model: str, build: Callable[[], ChainCase], learn: Callable[..., Chain] = registry.learn
 ) -> Verdict:
-    """Learn a model from a case, run it and judge it; refused where the data do not serve it.
+    """Learn a model from a case, run it and judge it; refused where the model cannot use the data.
 
     Parameters
     ----------
     model : str
         Of `registry.LEARNERS`.
     build : callable
-        Makes the case.
+        Returns the case.
     learn : callable
         As `registry.learn`.
     """
@@ -85,7 +85,7 @@ def run_chain(
 
 
 def matrix_rows(chain: Chain, case: ChainCase) -> list[Row]:
-    """Whether probabilities are probabilities, and a chain's expected values those of its matrix."""
+    """Checks of the probabilities, and of the expected values against powers of the matrix."""
     if not isinstance(chain, MarkovChain):
         return []
     data = chain.matrix.data
@@ -101,14 +101,14 @@ def matrix_rows(chain: Chain, case: ChainCase) -> list[Row]:
         later = begin @ np.linalg.matrix_power(chain.matrix.toarray(), case.steps)
         exact = np.bincount(chain.cell_of_state, later, chain.grid.n_cells)
         everyone = np.ones((1, begin.sum().astype(int)), bool)
-        found = chain.densities(case.start, everyone, [case.steps])[0, 0]
-        off = float(np.abs(found - exact).max() / begin.sum())
+        density = chain.densities(case.start, everyone, [case.steps])[0, 0]
+        off = float(np.abs(density - exact).max() / begin.sum())
         rows.append(Row("density off p P^n [1]", off, 0, ROUND_OFF, "dense power of the matrix"))
     return rows
 
 
 def density_rows(chain: Chain, case: ChainCase) -> list[Row]:
-    """Whether particles are conserved, exactly by expectation and one by one by Monte Carlo."""
+    """Checks that particles are conserved, by expectation and by Monte Carlo."""
     start = case.start
     marked = sides(np.asarray(start.x_m[-1]), np.asarray(start.z_m[-1]), WIDTH / 2, HEIGHT / 2)
     size, number = marked.sum(axis=1), marked.shape[1]
@@ -122,26 +122,28 @@ def density_rows(chain: Chain, case: ChainCase) -> list[Row]:
         Row("fewest particles in a cell [1]", float(min(drawn.min(), 0)), 0, 0.5, "definition"),
     ]
     if markov or (case.steps <= FEW_STEPS and number <= MANY_TRACERS):
-        found = chain.densities(start, marked, [*drawn_at, case.steps])
-        rows.append(Row("mass lost [1]", _most(found.sum(axis=2) - size) / number, 0, ROUND_OFF, "Eq. (1)"))
-        rows.append(Row("least density [1]", min(float(found.min()), 0.0), 0, ROUND_OFF, "definition"))
+        expected = chain.densities(start, marked, [*drawn_at, case.steps])
+        rows.append(
+            Row("mass lost [1]", _most(expected.sum(axis=2) - size) / number, 0, ROUND_OFF, "Eq. (1)")
+        )
+        rows.append(Row("least density [1]", min(float(expected.min()), 0.0), 0, ROUND_OFF, "definition"))
         if markov:
-            spread = np.sqrt(found[: len(drawn_at)] + 1)
-            off = _most((drawn - found[: len(drawn_at)]) / spread)
+            spread = np.sqrt(expected[: len(drawn_at)] + 1)
+            off = _most((drawn - expected[: len(drawn_at)]) / spread)
             rows.append(Row("Monte Carlo off, in standard errors [1]", off, 0, SIGMAS, "binomial spread"))
         rows.append(curve_row(chain, case, size))
     return rows
 
 
 def curve_row(chain: Chain, case: ChainCase, size: NDArray[np.int64]) -> Row:
-    """Whether mixing curves are shares, and undefined only for groups without particles."""
+    """Check that mixing curves are shares, defined for all groups with particles."""
     curves = chain.mixing(case.start, WIDTH / 2, HEIGHT / 2, min(case.steps, CURVE_STEPS))[:, size > 0]
     beyond = np.maximum(np.maximum(-curves, curves - 1), 0)
     return Row("mixing curve outside 0 to 1 [1]", float(beyond.max()), 0, ROUND_OFF, "definition")
 
 
 def long_run_rows(chain: Chain, case: ChainCase) -> list[Row]:
-    """Whether the long-run density is a density and, where it must be, that of the frames."""
+    """Checks of the long-run density; where it must be settled, against that of the frames."""
     density = chain.long_run_density(case.start)
     rows = [
         Row("sum of the long-run density [1]", float(density.sum()), 1, ROUND_OFF, "definition"),
@@ -159,7 +161,7 @@ def _most(values: NDArray[Any]) -> float:
 
 
 def rare_moves(probability: float, steps: int, tracers: int) -> Verdict:
-    """A chain of three cells in a row whose moves all have one tiny probability.
+    """Verdict of a chain of three cells in a row whose moves all have the same tiny probability.
 
     Parameters
     ----------
@@ -181,14 +183,14 @@ def rare_moves(probability: float, steps: int, tracers: int) -> Verdict:
     still = np.full((1, tracers), WIDTH / 6)
     start = Frames(np.zeros(1), still, still, np.zeros((1, tracers), np.int32))
     everyone = np.ones((1, tracers), bool)
-    found = chain.densities(start, everyone, [steps])[0, 0]
+    density = chain.densities(start, everyone, [steps])[0, 0]
     drawn = chain.densities(start, everyone, [steps], np.random.default_rng(5))[0, 0]
     expected = tracers * steps * probability
-    source = "binomial, p small"
+    source, near = "binomial, p small", 1e-6 + steps * probability
     return judge(
         [
-            Row("expected particles that moved [1]", found[1], expected, 1e-6 + steps * probability, source),
-            Row("mass lost [1]", abs(found.sum() - tracers) / tracers, 0, ROUND_OFF, "Eq. (1)"),
+            Row("expected particles that moved [1]", density[1], expected, near, source),
+            Row("mass lost [1]", abs(density.sum() - tracers) / tracers, 0, ROUND_OFF, "Eq. (1)"),
             Row("drawn particles that moved [1]", drawn[1:].sum(), expected,
                 (SIGMAS * np.sqrt(expected) + 0.5) / expected, source),
         ]

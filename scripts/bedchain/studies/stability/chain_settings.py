@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Settings of the chains, each for every model that it applies to."""
+"""Settings of the chains at extremes, each for every model that it applies to."""
 
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass, field, replace
@@ -15,7 +15,7 @@ from bedchain.chains.counting import count_moves
 from bedchain.chains.estimators import transition_matrix
 from bedchain.chains.markov_chain import MarkovChain
 from bedchain.studies.stability.chain_runs import ChainCase, rare_moves, run_chain
-from bedchain.studies.stability.settings import ON, Known, Setting
+from bedchain.studies.stability.settings import ON, Known, StabilitySetting
 from bedchain.studies.stability.theory import Limit
 from bedchain.studies.stability.verdict import Verdict
 from bedchain.studies.stability.walkers import (
@@ -33,9 +33,9 @@ from bedchain.trajectory.frames import Frames
 from bedchain.trajectory.grid import Grid
 
 FRAMES, PARTICLES = 41, 400
-HISTORY = {"dynamic": 2}  # lags that a state looks back over, with its own; 1 for the other models
+HISTORY = {"dynamic": 2}  # lags between the first and last frame of a move; 1 for the other models
 STEPS = {"static": 10**6, "dynamic": 10**6, "velocity_class": 10**6, "jump": 10**5, "recurrence": 10**4}
-MANY, SOME = 10**7, 10**5  # tracers, and in the reduced set
+MANY, SOME = 10**7, 10**5  # tracers in the full and in the reduced set
 PROBABILITIES = (1e-12, 1e-100, 1e-300)
 SMALLEST = 2.2e-308  # of a normal double
 RECURRENCE = {"separation_s": 0.1, "segment_s": 0.2, "coarse_m": 0.01}  # for windows of a second
@@ -44,29 +44,26 @@ Learn = Callable[..., Chain]
 
 
 @dataclass(frozen=True)
-class MadeUpWindow:
-    """A window of made-up frames on a grid, and the start that a chain is run from.
+class WalkerWindow:
+    """A window of synthetic frames, a grid, and the run of a chain that starts at the end of the window.
 
     Attributes
     ----------
     columns, rows : int
-        Of the grid.
+        Cells.
     n_frames, n_particles : int
-        Of the window.
     lag, steps : int
-        Frames in a step of the chain, and its steps.
+        Frames in a step, steps of the run.
     change : callable, optional
-        Makes other frames of the walkers.
+        Applied to the frames.
     top : float
-        Share of the bed's height that the walkers use.
+        Share of the height that the particles use [1].
     copies : int
-        So many times the particles of the window start.
+        Copies of each particle at the start.
     lift : float
-        How much higher they start, as a share of the bed's height.
-    settled : bool
-        Nothing can change any more.
-    options : dict
-        Of the model only.
+        Share of the particles moved to the top at the start [1].
+    settled, options
+        As in `ChainCase`.
     """
 
     columns: int = 4
@@ -82,23 +79,21 @@ class MadeUpWindow:
     settled: bool = False
     options: dict[str, Any] = field(default_factory=dict)
 
-
-def case(**keys: Any) -> ChainCase:
-    """The case of a `MadeUpWindow` with these fields; what leads up to a start is its own last frames."""
-    given = MadeUpWindow(**keys)
-    grid = Grid(WIDTH, HEIGHT, given.columns, given.rows)
-    frames = walkers(given.n_frames, given.n_particles, top=given.top)
-    frames = on_grid(given.change(frames) if given.change else frames, grid)
-    start = frames.part(slice(-min(given.n_frames, given.lag + 1), None))
-    if given.lift:
-        start = on_grid(lifted(start, given.lift), grid)
-    if given.copies > 1:
-        start = repeated(start, given.copies)
-    return ChainCase(frames, grid, start, given.lag, given.steps, given.settled, given.options)
+    def case(self) -> ChainCase:
+        """Frames, grid and start, the last frames of the window."""
+        grid = Grid(WIDTH, HEIGHT, self.columns, self.rows)
+        frames = walkers(self.n_frames, self.n_particles, top=self.top)
+        frames = on_grid(self.change(frames) if self.change else frames, grid)
+        start = frames.part(slice(-min(self.n_frames, self.lag + 1), None))
+        if self.lift:
+            start = on_grid(lifted(start, self.lift), grid)
+        if self.copies > 1:
+            start = repeated(start, self.copies)
+        return ChainCase(frames, grid, start, self.lag, self.steps, self.settled, self.options)
 
 
 def no_limit() -> Limit:
-    """For settings that no theory forbids."""
+    """No limit by theory."""
     return Limit("none", float("inf"), "mass and probabilities hold for any", float("nan"))
 
 
@@ -108,40 +103,37 @@ def window_limit(model: str, n_frames: int, lag: int) -> Limit:
     return Limit("lag [frames]", (n_frames - 1) // history, f"(frames - 1) / {history}", lag)
 
 
-def of(
+def setting_of(
     group: str, name: str, model: str, limit: Limit, keys: dict[str, Any], reduced: bool = True,
     guards: str = ON, learn: Learn | None = None,
-) -> Setting:  # fmt: skip
-    """The setting of one model on made-up frames."""
+) -> StabilitySetting:  # fmt: skip
+    """Setting of a model on a `WalkerWindow` with the given keys."""
     if model == "recurrence":
         keys = keys | {"options": RECURRENCE}
-    shown = {"columns": 4, "rows": 6, "n_frames": FRAMES, "n_particles": PARTICLES, "lag": 1, "steps": 40}
-    shown |= {key: value for key, value in keys.items() if key in shown}
+    window = WalkerWindow(**keys)
     values: dict[str, float | str] = {
-        "model": model, "columns_1": shown["columns"], "rows_1": shown["rows"], "frames_1": shown["n_frames"],
-        "lag_frames_1": shown["lag"], "steps_1": shown["steps"],
-        "tracers_1": shown["n_particles"] * keys.get("copies", 1),
+        "model": model, "columns_1": window.columns, "rows_1": window.rows, "frames_1": window.n_frames,
+        "lag_frames_1": window.lag, "steps_1": window.steps, "tracers_1": window.n_particles * window.copies,
     }  # fmt: skip
-    build = partial(case, **keys)
     words = {key: getattr(value, "__name__", value) for key, value in keys.items()}
     full = f"{name}, {model}{'' if guards == ON else ', guard off'}"
-    run = partial(_run, model, build, learn or registry.learn)
+    run = partial(_run, model, window.case, learn or registry.learn)
     inputs = repr((sorted(words.items()), guards))
-    return Setting(group, full, values, limit, run, inputs, guards, "", reduced)
+    return StabilitySetting(group, full, values, limit, run, inputs, guards, "", reduced)
 
 
 def _run(model: str, build: Build, learn: Learn, folder: Path, known: Known) -> Verdict:
     return run_chain(model, build, learn)
 
 
-def chain_settings() -> list[Setting]:
+def chain_settings() -> list[StabilitySetting]:
     """All settings of the chains, group by group."""
     groups = (grids, windows, sizes, long_runs, probabilities, traps)
     return [setting for group in groups for setting in group()]
 
 
-def grids() -> Iterator[Setting]:
-    """One cell, one cell a diameter, a row of one, a column of one, cells that nothing visits, a drain."""
+def grids() -> Iterator[StabilitySetting]:
+    """Grids: a single cell, cells of a diameter, a single row or column, unvisited cells, a drain."""
     per_diameter = {"columns": round(WIDTH / DIAMETER), "rows": round(HEIGHT / DIAMETER)}
     settings: dict[str, dict[str, Any]] = {
         "1 x 1 cell": {"columns": 1, "rows": 1, "settled": True},
@@ -153,41 +145,43 @@ def grids() -> Iterator[Setting]:
     }
     for name, keys in settings.items():
         for model in registry.LEARNERS:
-            yield of("chain grid", name, model, no_limit(), keys)
+            yield setting_of("chain grid", name, model, no_limit(), keys)
 
 
-def windows() -> Iterator[Setting]:
+def windows() -> Iterator[StabilitySetting]:
     """Lags from one frame to more than half the window, a window of two frames."""
     for lag in (1, (FRAMES - 1) // 4, (FRAMES - 1) // 2, FRAMES - 2):
         for model in registry.LEARNERS:
             limit = window_limit(model, FRAMES, lag)
-            yield of("chain window", f"lag of {lag} of {FRAMES - 1} frames", model, limit, {"lag": lag})
+            yield setting_of(
+                "chain window", f"lag of {lag} of {FRAMES - 1} frames", model, limit, {"lag": lag}
+            )
     for model in registry.LEARNERS:
         keys = {"n_frames": 2}
-        yield of("chain window", "window of two frames", model, window_limit(model, 2, 1), keys)
+        yield setting_of("chain window", "window of two frames", model, window_limit(model, 2, 1), keys)
 
 
-def sizes() -> Iterator[Setting]:
+def sizes() -> Iterator[StabilitySetting]:
     """One particle, and ten million tracers."""
     for model in registry.LEARNERS:
-        yield of("chain size", "one particle", model, no_limit(), {"n_particles": 1})
+        yield setting_of("chain size", "one particle", model, no_limit(), {"n_particles": 1})
     for tracers in (SOME, MANY):
         for model in registry.LEARNERS:
             limit = Limit("standard error of half [1]", 0.005, "1 / (2 sqrt(n))", 0.5 * tracers**-0.5)
             keys = {"copies": tracers // PARTICLES, "steps": 3}
-            yield of("chain size", f"{tracers:.0e} tracers", model, limit, keys, tracers == SOME)
+            yield setting_of("chain size", f"{tracers:.0e} tracers", model, limit, keys, tracers == SOME)
 
 
-def long_runs() -> Iterator[Setting]:
-    """As many steps as a chain may be asked for."""
+def long_runs() -> Iterator[StabilitySetting]:
+    """Runs of up to a million steps."""
     for model in registry.LEARNERS:
         steps = STEPS[model]
         limit = Limit("steps [1]", 1e-9 / np.finfo(float).eps, "1e-9 / eps, were mass not renewed", steps)
         keys = {"columns": 2, "rows": 3, "steps": steps, "n_particles": 100}
-        yield of("chain steps", f"{steps:.0e} steps", model, limit, keys, False)
+        yield setting_of("chain steps", f"{steps:.0e} steps", model, limit, keys, False)
 
 
-def probabilities() -> Iterator[Setting]:
+def probabilities() -> Iterator[StabilitySetting]:
     """Moves of a tiny probability."""
     for probability in PROBABILITIES:
         limit = Limit("1 over probability [1]", 1 / SMALLEST, "1 / 2.2e-308, normal doubles", 1 / probability)
@@ -197,26 +191,26 @@ def probabilities() -> Iterator[Setting]:
         }  # fmt: skip
         run = partial(_run_rare, probability)
         name = f"probability of {probability:.0e}"
-        yield Setting("chain probability", name, values, limit, run, repr(probability), reduced=True)
+        yield StabilitySetting("chain probability", name, values, limit, run, repr(probability), reduced=True)
 
 
 def _run_rare(probability: float, folder: Path, known: Known) -> Verdict:
     return rare_moves(probability, 100, 1000)
 
 
-def traps() -> Iterator[Setting]:
-    """A cell entered in the last frame only: a trap, unless the chain leads out of it again."""
+def traps() -> Iterator[StabilitySetting]:
+    """A cell entered in the last frame only: a trap, unless the estimator opens closed classes."""
     keys = {"top": 0.5, "change": lifted_last, "settled": True}
     for model in registry.LEARNERS:
-        yield of("chain trap", "cell entered in the last frame", model, no_limit(), keys)
-    yield of(
+        yield setting_of("chain trap", "cell entered in the last frame", model, no_limit(), keys)
+    yield setting_of(
         "chain trap", "cell entered in the last frame", "static", no_limit(), keys,
         guards="estimators.open_classes", learn=learn_shut,
     )  # fmt: skip
 
 
 def learn_shut(name: str, frames: Frames, grid: Grid, lag: int = 1) -> MarkovChain:
-    """The static chain as its counts are: closed classes stay closed."""
+    """The static chain straight from its counts, whose closed classes stay closed."""
     counts = count_moves(frames.cells, grid.n_cells, lag)
     chain = registry.learn(name, frames, grid, lag)
     assert isinstance(chain, MarkovChain)

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Head-on collisions of two equal spheres by LIGGGHTS alone: is the restitution what the law was given?"""
+"""Head-on collisions of two equal spheres by LIGGGHTS alone, and a check of their restitution."""
 
 from dataclasses import dataclass
 from pathlib import Path
@@ -15,7 +15,7 @@ from bedchain.studies.stability.verdict import Verdict, judge, refused, stopped
 from bedchain.studies.verification.rows import Row
 
 RESTITUTION, NEAR = 0.9, 0.05
-PAIRS = 8  # each meets at another moment within a step: with long steps that decides how deep they get
+PAIRS = 8  # each meets at another moment within a step, which with long steps decides the overlap
 BOX = 0.02  # [m]
 GAP = 5e-5  # [m], the smallest between two spheres at the start
 DURATIONS = 4  # of the collision, that are simulated after the first touch
@@ -46,28 +46,28 @@ class Collision:
     allowed: bool = False
 
 
-def run_collision(folder: Path, of: Collision) -> Verdict:
-    """Let some pairs collide, and judge the worst restitution.
+def run_collision(folder: Path, collision: Collision) -> Verdict:
+    """Verdict of the worst restitution of some colliding pairs.
 
     Parameters
     ----------
     folder : Path
         To work in.
-    of : Collision
+    collision : Collision
     """
-    spheres = pairs(of)
-    time = (GAP + of.speed * of.step) / of.speed + DURATIONS * of.duration
-    span = nearest_multiple(2 * time, of.step)
+    spheres = pairs(collision)
+    time = (GAP + collision.speed * collision.step) / collision.speed + DURATIONS * collision.duration
+    span = nearest_multiple(2 * time, collision.step)
     sections: dict[str, dict[str, Any]] = {
         "bed": {"width_m": BOX, "height_m": BOX},
         "particles": {"density_kg_m3": DENSITY, "diameter_m": DIAMETER},
         "contact": {
-            "young_modulus_Pa": of.young, "poisson_ratio_1": POISSON, "restitution_1": RESTITUTION,
+            "young_modulus_Pa": collision.young, "poisson_ratio_1": POISSON, "restitution_1": RESTITUTION,
         },
         "gas": {"superficial_velocity_m_s": 0.0, "cell_size_m": BOX},
         "time": {
-            "dem_step_s": of.step, "gas_step_s": of.step, "frame_interval_s": span,
-            "allow_unstable_step": of.allowed,
+            "dem_step_s": collision.step, "gas_step_s": collision.step, "frame_interval_s": span,
+            "allow_unstable_step": collision.allowed,
         },
     }  # fmt: skip
     try:
@@ -76,14 +76,14 @@ def run_collision(folder: Path, of: Collision) -> Verdict:
         return refused(error)
     except UserError as error:
         return stopped(str(error))
-    apart = (frames[-1, 1::2, 3] - frames[-1, ::2, 3]) / of.speed
+    apart = (frames[-1, 1::2, 3] - frames[-1, ::2, 3]) / collision.speed
     worst = float(apart[np.argmax(np.abs(apart - RESTITUTION))])
     source = "definition: separation over approach speed; the coefficient given to the contact law"
     return judge([Row("restitution [1]", worst, RESTITUTION, NEAR, source)], {"restitution_1": worst})
 
 
-def pairs(of: Collision) -> np.ndarray:
-    """Spheres of `PAIRS` pairs, one above the other, each a part of a step further apart.
+def pairs(collision: Collision) -> np.ndarray:
+    """Spheres of `PAIRS` pairs, one above the other, each by a fraction of a step further apart.
 
     Returns
     -------
@@ -93,9 +93,9 @@ def pairs(of: Collision) -> np.ndarray:
     rows = []
     for pair in range(PAIRS):
         z = (pair + 0.5) * 2 * DIAMETER
-        gap = GAP + pair / PAIRS * of.speed * of.step
+        gap = GAP + pair / PAIRS * collision.speed * collision.step
         middle = BOX / 2
         for side in (-1, 1):
             x = middle + side * (DIAMETER + gap) / 2
-            rows.append([x, z, -side * of.speed / 2, 0.0, DIAMETER])
+            rows.append([x, z, -side * collision.speed / 2, 0.0, DIAMETER])
     return np.array(rows)

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""One setting of the study: what it is, the limit by theory, and how it is tried."""
+"""Settings of the stability study: values, limit by theory, and run."""
 
 from collections.abc import Callable, Iterable, Mapping
 from dataclasses import dataclass, field
@@ -9,23 +9,23 @@ from bedchain.errors import UserError
 from bedchain.studies.stability.theory import Limit
 from bedchain.studies.stability.verdict import Verdict
 
-ON = "on"  # guards as they come
+ON = "on"  # all guards on, as by default
 Known = Mapping[str, Mapping[str, float]]
 
 
 def is_of_chains(group: str) -> bool:
-    """Whether a group of settings tries chains, and not solvers."""
+    """Whether a group of settings is of chains, not of solvers."""
     return group.startswith("chain")
 
 
 @dataclass(frozen=True)
-class Setting:
-    """A setting at some extreme.
+class StabilitySetting:
+    """A setting at an extreme.
 
     Attributes
     ----------
     group : str
-        What is varied.
+        Number that is varied.
     name : str
         Unique within the study.
     values : dict
@@ -33,13 +33,13 @@ class Setting:
     limit : Limit
         By theory.
     run : callable
-        From a folder to work in and what was observed in other settings to a `Verdict`.
+        Takes a folder to work in and the observed values of other settings, returns a `Verdict`.
     inputs : str
-        All that decides about the result beside the sources, as text.
+        All that the result depends on besides the sources, as text.
     guards : str
         `ON`, or the guard that is off.
     needs : str
-        Setting that this one is compared with; empty for none.
+        Name of the setting that this one is compared with; empty for none.
     reduced : bool
         Whether it is in the reduced set.
     """
@@ -55,21 +55,21 @@ class Setting:
     reduced: bool = field(default=False, compare=False)
 
 
-def chosen(settings: list[Setting], groups: Iterable[str], reduced: bool) -> list[Setting]:
-    """Some of the settings, with those that they are compared with, in the order of the study.
+def chosen(settings: list[StabilitySetting], groups: Iterable[str], reduced: bool) -> list[StabilitySetting]:
+    """Settings of some groups, with those that they are compared with, in the order of the study.
 
     Parameters
     ----------
-    settings : list of Setting
+    settings : list of StabilitySetting
     groups : iterable of str
-        Names of groups; none means all.
+        Names of groups; empty for all.
     reduced : bool
         Only the reduced set.
 
     Raises
     ------
     UserError
-        There is no group of a name: lists those that there are.
+        Unknown group; lists the known ones.
     """
     known = list(dict.fromkeys(setting.group for setting in settings))
     wanted = set(groups) or set(known)

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Limits by theory, which the settings are held against."""
+"""Limits by theory, with which the settings are compared."""
 
 import math
 from dataclasses import dataclass
@@ -28,12 +28,12 @@ class Limit:
     Attributes
     ----------
     quantity : str
-        What it limits, with its unit in brackets.
+        Quantity that it limits, with its unit in brackets.
     value : float
         The limit.
     formula : str
     at : float
-        What the setting has.
+        Value of the quantity in the setting.
     """
 
     quantity: str
@@ -43,12 +43,12 @@ class Limit:
 
     @property
     def share(self) -> float:
-        """What the setting has over the limit [1]."""
+        """Value in the setting over the limit [1]."""
         return self.at / self.value if self.value else math.inf
 
 
 def rayleigh(scene: Scene) -> float:
-    """Time of a surface wave over a particle [s] (`case_numbers.rayleigh_time`)."""
+    """Time of a surface wave over a particle [s] (`contacts.rayleigh_time`)."""
     return rayleigh_time(scene.young, scene.poisson, scene.density, scene.diameter / 2)
 
 
@@ -62,7 +62,7 @@ def overlap_at_rest(scene: Scene, number: int) -> float:
 def deepest_overlap(scene: Scene, number: int) -> float:
     """Overlap over the diameter that no contact of a bed coming to rest should exceed [1].
 
-    The larger one of `OVERLAP_TIMES` that at rest, and that of a particle which still falls by a diameter,
+    The larger of `OVERLAP_TIMES` the overlap at rest and that of a particle after a fall over a diameter,
     ``(15 m* v^2 / (16 E* sqrt(R*)))^(2/5) / d`` (Hertz; Johnson 1985, Contact Mechanics, ch. 11).
     """
     mass, modulus = scene.density * scene.volume / 2, contact_modulus(scene.young, scene.poisson)
@@ -89,42 +89,42 @@ def oscillator_step(scene: Scene, number: int) -> float:
 
 
 def dem_step_limit(scene: Scene, step: float) -> Limit:
-    """The usual share of the Rayleigh time."""
+    """Limit of the particles' step: the usual share of the Rayleigh time."""
     formula = "0.2 pi r sqrt(rho/G) / (0.1631 nu + 0.8766)"
     return Limit("DEM step [s]", RAYLEIGH_SHARE_MAX * rayleigh(scene), formula, step)
 
 
 def collision_limit(scene: Scene, step: float) -> Limit:
-    """The duration of an elastic collision at the velocity of a fall over one diameter."""
+    """Limit of the particles' step: duration of an elastic collision after a fall over one diameter."""
     formula = "2.868 (m*^2 / (R* E*^2 sqrt(g d)))^(1/5)"
     return Limit("DEM step [s]", contact_duration(scene), formula, step)
 
 
 def courant_limit(scene: Scene, step: float) -> Limit:
-    """Step in which the gas of a packed bed crosses one cell."""
+    """Limit of the gas step: the time in which the gas of a packed bed crosses one cell."""
     speed = scene.velocity / DENSE_VOIDAGE
     value = COURANT_MAX * scene.cell / speed if speed else math.inf
     return Limit("gas step [s]", value, "cell / (U / 0.4)", step)
 
 
 def free_fall_limit(scene: Scene, step: float) -> Limit:
-    """Share of the time in which a particle falls through one gas cell."""
+    """Limit of the gas step: a share of the time in which a particle falls through one gas cell."""
     value = FREE_FALL_SHARE_MAX * math.sqrt(2 * scene.cell / GRAVITY_M_S2)
     return Limit("gas step [s]", value, f"{FREE_FALL_SHARE_MAX:g} sqrt(2 cell / g)", step)
 
 
 def gas_step_limit(scene: Scene, step: float) -> Limit:
-    """The stricter one of the two limits of the gas's step."""
+    """The stricter of the two limits of the gas step."""
     return min(courant_limit(scene, step), free_fall_limit(scene, step), key=lambda limit: limit.value)
 
 
 def density_limit(ratio: float) -> Limit:
-    """Gas over particle density above which the added mass, which no equation has, counts."""
+    """Limit of gas over particle density: above it the added mass matters, which the equations lack."""
     return Limit("gas over particle density [1]", 2 * ADDED_MASS_MAX, "rho_g / (2 rho_p) <= 0.05", ratio)
 
 
 def velocity_limit(scene: Scene) -> Limit:
-    """Velocity that carries single particles away."""
+    """Limit of the superficial velocity: the terminal velocity of a particle."""
     formula = "F_d(u_t) = (rho_p - rho_g) V g, Schiller and Naumann"
     return Limit("superficial velocity [m/s]", terminal_velocity(scene), formula, scene.velocity)
 

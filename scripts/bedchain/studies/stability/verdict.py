@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""How a setting ended: stable, inaccurate, refused, diverged, or a fault of ours, hung or crashed."""
+"""Verdict of a setting: stable, inaccurate, refused, diverged, or by a fault of ours hung or crashed."""
 
 import math
 import re
@@ -11,11 +11,11 @@ from bedchain.studies.verification.rows import Row
 STABLE, INACCURATE, REFUSED, DIVERGED, HUNG, CRASHED = OUTCOMES = (
     *("stable", "inaccurate", "refused", "diverged", "hung", "crashed"),
 )
-FAULTS = (HUNG, CRASHED)  # neither may happen: a refused or stopped setting says why
+FAULTS = (HUNG, CRASHED)  # these may not happen: a guard should refuse or stop the setting with a reason
 NUMBER = r"[-+0-9.eE]+|nan|-nan|inf|-inf"
 VECTOR = rf"\((?P<x>{NUMBER}) (?:{NUMBER}) (?P<z>{NUMBER})\)"
 STOP = rf"at (?P<time>{NUMBER}) s\. The last finished segment is intact"
-# What the solvers say where they stop a run, by the name of the guard
+# Messages of the solvers that stop a run, by the name of the guard
 GUARDS = {
     "overlap": rf"particle \d+ at {VECTOR} m and (?:particle \d+|the wall \w+) overlap by .*?{STOP}",
     "lost particle": rf"particle \d+ has left the bed \(\d+ lost\), last seen at {VECTOR} m, {STOP}",
@@ -23,31 +23,31 @@ GUARDS = {
     "pressure": rf"the pressure is not solved .*? in the gas cell at {VECTOR} m, {STOP}",
     "divergence": rf"the run has diverged .*? in the gas cell at {VECTOR} m, {STOP}",
     "gas solver": rf"fastest gas .*? in the gas cell at {VECTOR} m, {STOP}",
-    # LIGGGHTS tells neither place nor time, and numbers that are wrong
+    # LIGGGHTS gives neither place nor time, and wrong numbers
     "lost particle while settling": r"Lost atoms",
 }
 
 
 @dataclass(frozen=True)
 class Verdict:
-    """How one setting ended.
+    """Outcome of a setting and its reason.
 
     Attributes
     ----------
     outcome : str
-        One of `OUTCOMES`.
+        Of `OUTCOMES`.
     guard : str
-        What refused or stopped it.
+        Guard that refused or stopped it.
     reason : str
         In one sentence.
     time_s, x_m, z_m : float
-        Where and when it was stopped [s], [m].
+        Time and place of the stop [s], [m].
     quantity : str
-        What is worst, of all that was looked at.
+        Quantity with the largest excess over its tolerance.
     value, reference, tolerance : float
-        That quantity, what it should be, and how near is near enough (`verification.rows.Row`).
+        Of that quantity (`verification.rows.Row`).
     observed : dict of str to float
-        What other settings are compared with.
+        Values with which other settings are compared.
     """
 
     outcome: str
@@ -64,14 +64,14 @@ class Verdict:
 
 
 def excess(row: Row) -> float:
-    """Distance from the reference over the tolerance [1]; above 1 does not pass, a NaN is infinitely off."""
+    """Distance from the reference over the tolerance [1]; above 1 it fails, infinite for a NaN."""
     scale = row.tolerance * (abs(row.reference) or 1.0)
     off = abs(row.value - row.reference) / scale
     return off if math.isfinite(off) else math.inf
 
 
 def judge(rows: list[Row], observed: dict[str, float] | None = None) -> Verdict:
-    """Stable where every quantity is near enough, else inaccurate; the worst one is told.
+    """Verdict of a finished run: stable where all rows pass, else inaccurate; with the worst row.
 
     Parameters
     ----------
@@ -92,7 +92,7 @@ def judge(rows: list[Row], observed: dict[str, float] | None = None) -> Verdict:
 
 
 def refused(error: CaseError) -> Verdict:
-    """A case that its checks refuse: which key, the limit and the remedy."""
+    """Verdict of a case that its checks refuse, with key, limit and remedy."""
     first = error.problems[0]
     return Verdict(
         REFUSED, f"check of {first.key}", "; ".join(f"{item.key}: {item.wrong}" for item in error.problems)
@@ -100,24 +100,24 @@ def refused(error: CaseError) -> Verdict:
 
 
 def stopped(text: str) -> Verdict:
-    """A run that its solvers stopped: the guard, the place and the time, by their own words.
+    """Verdict of a run that its solvers stopped, with guard, place and time from their messages.
 
     Parameters
     ----------
     text : str
-        What the command line said.
+        Output of the run.
 
     Returns
     -------
     Verdict
-        Diverged; crashed where no guard said why, or with a traceback.
+        Diverged; crashed without the message of a guard, or with a traceback.
     """
     text = " ".join(text.split())
     for guard, pattern in GUARDS.items():
-        found = re.search(pattern, text)
-        if found and "Traceback" not in text:
-            numbers = {name: float(value) for name, value in found.groupdict().items()}
+        match = re.search(pattern, text)
+        if match and "Traceback" not in text:
+            numbers = {name: float(value) for name, value in match.groupdict().items()}
             when, x, z = (numbers.get(name, math.nan) for name in ("time", "x", "z"))
-            reason = found[0].removesuffix(" The last finished segment is intact")
+            reason = match[0].removesuffix(" The last finished segment is intact")
             return Verdict(DIVERGED, guard, reason, when, x, z)
     return Verdict(CRASHED, reason=text[-500:])

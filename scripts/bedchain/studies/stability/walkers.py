@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Made-up frames for the chains: particles with a memory of their velocity in a small box."""
+"""Synthetic frames for the chains: particles with a memory of their velocity in a small box."""
 
 from dataclasses import replace
 
@@ -67,17 +67,17 @@ def lifted(frames: Frames, share: float) -> Frames:
 
 
 def lifted_last(frames: Frames) -> Frames:
-    """Frames of which the last one shows a single particle at the top of the box."""
+    """Frames whose last one shows a single particle at the top of the box."""
     return lifted(frames, 0.0)
 
 
 def repeated(frames: Frames, times: int) -> Frames:
-    """Every particle so many times, in single precision."""
+    """Frames with every particle ``times`` times, in single precision."""
 
-    def more(values: np.ndarray | None) -> np.ndarray | None:
+    def tiled(values: np.ndarray | None) -> np.ndarray | None:
         return None if values is None else np.tile(np.asarray(values, np.float32), (1, times))
 
-    x, z = more(frames.x_m), more(frames.z_m)
+    x, z = tiled(frames.x_m), tiled(frames.z_m)
     assert x is not None and z is not None
     cells = np.tile(frames.cells, (1, times))
-    return Frames(frames.times_s, x, z, cells, more(frames.vx_m_s), more(frames.vz_m_s))
+    return Frames(frames.times_s, x, z, cells, tiled(frames.vx_m_s), tiled(frames.vz_m_s))

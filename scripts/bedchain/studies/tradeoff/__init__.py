@@ -1,2 +1,2 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""What accuracy costs: chains of many settings, and beds simulated in many ways, against one reference."""
+"""The trade-off between cost and accuracy: chains of many settings and variants of the bed, one reference."""

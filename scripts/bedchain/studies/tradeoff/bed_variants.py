@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""The ways in which a case's bed is simulated again: one key at a time, and pairs that belong together."""
+"""Variants of a case's bed: one key changed at a time, and pairs of keys that belong together."""
 
 import math
 from collections.abc import Iterator, Mapping
@@ -17,13 +17,13 @@ STIFFNESSES = (0.1, 0.4, 4.0, 10.0)
 STEPS = (0.5, 2.5)
 GAS_STEPS = (0.2, 0.5, 2.0)
 GAS_CELLS = (0.5, 2.0, 4.0)
-# in diameters; what is shorter than 1.4 gas cells changes nothing, since their own kernel is as wide
+# in diameters; a length below 1.4 gas cells changes nothing, since the kernel of the cells is as wide
 SMOOTHINGS = (10.0,)
-# in diameters; the first by the conversion of Hoomans et al. 1996
+# in diameters; the first is the conversion of Hoomans et al. 1996
 THICKNESSES = (0.859, 1.2)
 FRICTIONS = (0.0, 0.3)
 RESTITUTIONS = (0.8, 0.97)
-# an arm of a twentieth of the radius: where the audit would keep rolling resistance
+# an arm of a twentieth of the radius, from which on the audit keeps rolling resistance
 ROLLING_FRICTIONS = (0.05,)
 PRESSURE_TOLERANCES = (1e-5, 1e-9)
 SEED_SPACING = 1000
@@ -32,12 +32,12 @@ SEEDS = 2
 PRIMES = (2, 5)
 ROUND_OFF = 1e-9
 OPTIONS = ("dem",)
-REALISATION = "realisation"  # the axis of those that differ in their random start alone
+REALISATION = "realisation"  # axis of the variants that differ only in their random start
 
 
 @dataclass(frozen=True)
 class BedVariant:
-    """A variant, and which axis of the study it is on.
+    """A variant and its axis of the study.
 
     Attributes
     ----------
@@ -50,7 +50,7 @@ class BedVariant:
 
     @property
     def changed(self) -> str:
-        """What differs from the case, in one line."""
+        """Differences from the case, in one line."""
         return "; ".join(f"{key} {_shown(value)}" for key, value in self.variant.changes.items())
 
 
@@ -64,15 +64,14 @@ def bed_variants(case: Case) -> dict[str, BedVariant]:
     Returns
     -------
     dict
-        Those that cost most first, so that the last ones end together; values that are the case's own are
-        left out.
+        Most expensive first, so that the last ones end together; without values that the case already has.
     """
     gas = case["gas"]["model"] != "none"
-    found = {"base": BedVariant(REALISATION, Variant("base"))}
+    variants = {"base": BedVariant(REALISATION, Variant("base"))}
     for axis, name, changes in [*_particles(case), *(_gas(case) if gas else ())]:
         if any(case_value(case, key) != value for key, value in changes.items()):
-            found[name] = BedVariant(axis, Variant(name, changes))
-    return dict(sorted(found.items(), key=lambda pair: _step(pair[1], case)))
+            variants[name] = BedVariant(axis, Variant(name, changes))
+    return dict(sorted(variants.items(), key=lambda item: _step(item[1], case)))
 
 
 def wanted_variants(option: object, case: Case, archived: bool) -> list[str]:
@@ -81,8 +80,8 @@ def wanted_variants(option: object, case: Case, archived: bool) -> list[str]:
     Parameters
     ----------
     option : object
-        ``{"dem": "all"}``, ``"none"`` or a list of names; without it all where the case is simulated, none
-        where an archive serves it.
+        ``{"dem": names}`` with ``"all"``, ``"none"`` or a list of names. Default: all where the case is
+        simulated, none where it comes from its archive.
     case : Case
     archived : bool
         Whether the case comes from its archive.
@@ -95,7 +94,7 @@ def wanted_variants(option: object, case: Case, archived: bool) -> list[str]:
     Raises
     ------
     UserError
-        Another word, or a name that does not exist: with those that do.
+        Another word or an unknown name; lists the known ones.
     """
     remedy = "take --config tradeoff='{dem: all}', none, or a list of names"
     if option is not None and not isinstance(option, Mapping):
@@ -116,13 +115,13 @@ def wanted_variants(option: object, case: Case, archived: bool) -> list[str]:
 
 
 def variants_or_exit(option: object, case: Case, archived: bool) -> list[str]:
-    """`wanted_variants`, or one clear message and the end of snakemake, before anything runs."""
+    """`wanted_variants`; on an error its message, and snakemake ends before any job."""
     with report_user_errors():
         return wanted_variants(option, case, archived)
 
 
 def dividing_step(whole_s: float, wanted_s: float) -> float:
-    """The longest step up to about `wanted_s` that a time is a whole number of, in decimal numbers [s]."""
+    """The longest step up to about `wanted_s` that divides a time, with few decimal digits [s]."""
     number = math.ceil(whole_s / wanted_s * (1 - ROUND_OFF))
     while _without(PRIMES, number) != 1:
         number += 1
@@ -130,7 +129,7 @@ def dividing_step(whole_s: float, wanted_s: float) -> float:
 
 
 def dividing_cell(case: Case, factor: float) -> float:
-    """Square gas cells that divide the bed, as nearly `factor` times the case's as may be [m]."""
+    """Size of square gas cells that divide the bed, as near as possible to `factor` times the case's [m]."""
     width, height = (Fraction(repr(case["bed"][name])) for name in ("width_m", "height_m"))
     shape = height / width
     wanted = float(width) / (case["gas"]["cell_size_m"] * factor)
@@ -188,7 +187,7 @@ def _gas(case: Case) -> Iterator[tuple[str, str, dict[str, Any]]]:
 
 
 def _without(primes: tuple[int, ...], number: int) -> int:
-    """What is left of a number without some of its factors."""
+    """A number divided by all its factors among some primes."""
     for prime in primes:
         while number % prime == 0:
             number //= prime
@@ -201,13 +200,13 @@ def _with_gas_step(case: Case, gas_step_s: float) -> dict[str, Any]:
 
 
 def _coupling(case: Case) -> float:
-    """What the particles' step must divide [s]: the gas's step, or, without gas, the frame interval."""
+    """Time that the particles' step must divide [s]: the gas step or, without gas, the frame interval."""
     time, gas = case["time"], case["gas"]["model"] != "none"
     return float(time["gas_step_s"] if gas else time["frame_interval_s"])
 
 
-def _step(one: BedVariant, case: Case) -> float:
-    return float(one.variant.changes.get("time.dem_step_s", case["time"]["dem_step_s"]))
+def _step(bed: BedVariant, case: Case) -> float:
+    return float(bed.variant.changes.get("time.dem_step_s", case["time"]["dem_step_s"]))
 
 
 def _shown(value: object) -> str:

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""The chains whose cost and errors are measured: every cell size with every lag, the rest one at a time."""
+"""Settings of the chains of the trade-off: each cell size with each lag, all else varied one at a time."""
 
 from collections.abc import Iterator
 from dataclasses import asdict, dataclass
@@ -10,31 +10,31 @@ from bedchain.case.presets import count_near
 from bedchain.chains.estimators import ESTIMATORS
 from bedchain.errors import DataError
 from bedchain.measures.mixing import Splits
-from bedchain.studies.scores.candidates import Candidate
+from bedchain.studies.candidates import Candidate, grid_of, is_resolved
 from bedchain.trajectory.frames import lag_frames
 from bedchain.trajectory.grid import Grid
 
 CELL_SIZES_M = (0.0025, 0.005, 0.01, 0.02, 0.03, 0.05)
 LAGS_S = (0.025, 0.05, 0.1, 0.25, 0.5, 1.0, 2.0)
-# width and height of a cell over those of the case's own
+# width and height of a cell over those of the case's cells
 SHAPES = ((0.25, 4), (0.5, 2), (2, 0.5), (4, 0.25))
 WINDOWS_S = (0.5, 1.0, 2.0, 3.0, 5.0)
 # where a window half as long as the case's begins, as a share of the case's
 BEGINNINGS = (0.0, 0.25, 0.5)
-# the dynamic chain takes gigabytes on finer cells: size of its cells and its lag over the case's own
+# the dynamic chain takes gigabytes on finer cells: size of its cells and its lag over those of the case
 DYNAMIC = ((1, 1), (1, 2), (1, 4), (2, 1), (2, 2))
 TRACERS = (100, 1000, 10_000, 100_000, 1_000_000)
 FACTORIAL, ORDER = "cells and lag", "order"
 
 
 @dataclass(frozen=True)
-class Setting:
-    """One chain, and how it is run.
+class ChainSetting:
+    """Setting of one chain and of its run.
 
     Parameters
     ----------
     axis : str
-        What is varied.
+        Setting that is varied.
     model : str
         A name in `registry.LEARNERS`.
     columns, rows : int
@@ -66,13 +66,13 @@ class Setting:
 
     @property
     def key(self) -> str:
-        """The whole setting in one line."""
+        """The setting in one line."""
         return " ".join(str(value) for value in asdict(self).values())
 
 
 @dataclass(frozen=True)
-class Own:
-    """The case's own chain, which the settings vary.
+class CaseChain:
+    """The chain of the case, from which the settings differ.
 
     Parameters
     ----------
@@ -87,10 +87,11 @@ class Own:
     interval_s : float
         Between two frames [s].
     diameter_m : float
-        Of a particle: no cell is smaller [m].
+        Of a particle, the smallest size of a cell [m].
     splits : Splits
+        Lines between left and right, low and up [m].
     models : tuple of str
-        The case's, those of the paper among which are studied.
+        Of the case; of these, the paper's are studied.
     """
 
     grid: Grid
@@ -116,73 +117,67 @@ class Own:
         return columns, count_near(grid.height_m, high, split_z, grid.rows, self.diameter_m)
 
     def scaled(self, wide: float, high: float) -> tuple[int, int]:
-        """Columns and rows of cells so many times as wide and as high as the case's own [1]."""
+        """Columns and rows of cells that are this many times as wide and as high as the case's [1]."""
         return self.near(self.grid.cell_width_m * wide, self.grid.cell_height_m * high)
 
 
-def settings(own: Own) -> list[Setting]:
-    """All settings that the case's windows and particles allow, those of the same cells together.
+def chain_settings(base: CaseChain) -> list[ChainSetting]:
+    """Settings that the case's windows and particles allow, ordered by cells.
 
     Parameters
     ----------
-    own : Own
+    base : CaseChain
 
     Returns
     -------
-    list of Setting
-        None twice; the case's own chain is in the axis `FACTORIAL`.
+    list of ChainSetting
+        Each once; the chain of the case is in the axis `FACTORIAL`.
     """
-    found: dict[tuple[Any, ...], Setting] = {}
-    for axis, changes in _changes(own):
-        made = {
-            "model": "static", "columns": own.grid.columns, "rows": own.grid.rows, "lag": own.lag,
-            "estimator": own.estimator, "first": own.learning.start, "last": own.learning.stop - 1,
+    by_values: dict[tuple[Any, ...], ChainSetting] = {}
+    for axis, changes in _changes(base):
+        defaults = {
+            "model": "static", "columns": base.grid.columns, "rows": base.grid.rows, "lag": base.lag,
+            "estimator": base.estimator, "first": base.learning.start, "last": base.learning.stop - 1,
         }  # fmt: skip
-        setting = Setting(axis, **made | changes)
-        longest = min(setting.last - setting.first, own.compared)
-        if _resolved(own, setting) and setting.lag * (2 if setting.model == "dynamic" else 1) <= longest:
-            found.setdefault(tuple(asdict(setting).values())[1:], setting)
-    return sorted(found.values(), key=lambda one: (one.columns, one.rows))
+        setting = ChainSetting(axis, **defaults | changes)
+        longest = min(setting.last - setting.first, base.compared)
+        if (
+            is_resolved(grid_of(setting.candidate, base.grid), base.diameter_m)
+            and setting.lag * (2 if setting.model == "dynamic" else 1) <= longest
+        ):
+            by_values.setdefault(tuple(asdict(setting).values())[1:], setting)
+    return sorted(by_values.values(), key=lambda setting: (setting.columns, setting.rows))
 
 
-def _changes(own: Own) -> Iterator[tuple[str, dict[str, Any]]]:
+def _changes(base: CaseChain) -> Iterator[tuple[str, dict[str, Any]]]:
     yield FACTORIAL, {}
-    own_cells = own.grid.columns, own.grid.rows
-    for (columns, rows), lag in product([own_cells, *map(own.near, CELL_SIZES_M)], lags(own)):
+    base_cells = base.grid.columns, base.grid.rows
+    for (columns, rows), lag in product([base_cells, *map(base.near, CELL_SIZES_M)], lags(base)):
         yield FACTORIAL, {"columns": columns, "rows": rows, "lag": lag}
     for wide, high in SHAPES:
-        columns, rows = own.scaled(wide, high)
+        columns, rows = base.scaled(wide, high)
         yield "cell shape", {"columns": columns, "rows": rows}
     for name in ESTIMATORS:
         yield "estimator", {"estimator": name}
-    for length in (round(length_s / own.interval_s) for length_s in WINDOWS_S):
-        if length < own.frames:
-            yield "window", {"first": own.learning.stop - 1 - length}
+    for length in (round(length_s / base.interval_s) for length_s in WINDOWS_S):
+        if length < base.frames:
+            yield "window", {"first": base.learning.stop - 1 - length}
     for share in BEGINNINGS:
-        first, half = own.learning.start + round(share * own.frames), own.frames // 2
-        yield "window start", {"first": first, "last": min(first + half, own.learning.stop - 1)}
-    for size, lag in DYNAMIC if "dynamic" in own.models else ():
-        columns, rows = own.scaled(size, size) if size != 1 else own_cells
-        yield ORDER, {"model": "dynamic", "columns": columns, "rows": rows, "lag": lag * own.lag}
+        first, half = base.learning.start + round(share * base.frames), base.frames // 2
+        yield "window start", {"first": first, "last": min(first + half, base.learning.stop - 1)}
+    for size, lag in DYNAMIC if "dynamic" in base.models else ():
+        columns, rows = base.scaled(size, size) if size != 1 else base_cells
+        yield ORDER, {"model": "dynamic", "columns": columns, "rows": rows, "lag": lag * base.lag}
     for tracers in TRACERS:
         yield "tracers", {"tracers": tracers}
 
 
-def lags(own: Own) -> list[int]:
-    """The case's own lag and those of `LAGS_S` that are whole numbers of frames [frames]."""
-    found = [own.lag]
+def lags(base: CaseChain) -> list[int]:
+    """The case's lag and those of `LAGS_S` that are whole numbers of frames [frames]."""
+    whole = [base.lag]
     for lag_s in LAGS_S:
         try:
-            found.append(lag_frames(lag_s, own.interval_s))
+            whole.append(lag_frames(lag_s, base.interval_s))
         except DataError:
             continue
-    return found
-
-
-def _resolved(own: Own, setting: Setting) -> bool:
-    try:
-        grid = Grid(own.grid.width_m, own.grid.height_m, setting.columns, setting.rows)
-        grid.check_resolution(own.diameter_m)
-    except DataError:
-        return False
-    return True
+    return whole

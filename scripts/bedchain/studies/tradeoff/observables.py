@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""What is compared: mixing curves and densities of the reference, errors against them, in noise floors."""
+"""Observables of the trade-off (curves, densities, scalars), of the reference and other beds, and errors."""
 
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
@@ -9,6 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy import stats
 
+from bedchain.studies.scan import REPLICATES
 from bedchain.uncertainty.bands import band
 from bedchain.uncertainty.deviations import (
     SIDES,
@@ -26,7 +27,7 @@ Row = dict[str, Any]
 
 CURVES = ("left", "right", "low", "up", "mixing")
 DENSITY = "density"
-# of the bed as a whole, by name: unit
+# observables of the bed as a whole, with their units
 SCALARS = {
     "mixing_time_radial": "s",
     "mixing_time_axial": "s",
@@ -38,14 +39,13 @@ SCALARS = {
     "granular_temperature": "m2_s2",
 }
 UNITS = dict.fromkeys((*CURVES, DENSITY), "1") | SCALARS
-REPLICATES = 1000
 # of the intervals only: the same data give the same interval
 INTERVAL_SEED = 23
 
 
 @dataclass(frozen=True)
-class Seen:
-    """What one simulated bed did over the comparison window.
+class BedObservables:
+    """Observables of one simulated bed over the comparison window.
 
     Attributes
     ----------
@@ -64,7 +64,7 @@ class Seen:
 
 @dataclass(frozen=True)
 class Reference:
-    """The bed that everything is compared with, in all its realisations.
+    """Observables of the bed that all is compared with, in all its realisations.
 
     Parameters
     ----------
@@ -88,28 +88,28 @@ class Reference:
     def floors(self) -> dict[str, float]:
         """Noise floor of every observable, NaN where there are no repeats; that of a density also without.
 
-        Of curves and densities: what the mean of all realisations (of the density: of the other ones, or of
-        the other half of the window) differs by from one. Of scalars: their standard deviation.
+        Of curves: difference between one realisation and the mean of all. Of densities: between one and the
+        mean of the others, or between the halves of the window. Of scalars: the standard deviation.
         """
-        found = dict.fromkeys(UNITS, np.nan)
+        floors = dict.fromkeys(UNITS, np.nan)
         if self.repeated:
-            found |= {name: floor_of(self.curves[..., list(SIDES[name])]) for name in CURVES}
-        found[DENSITY] = float(np.nanmean(self._between_densities()))
+            floors |= {name: floor_of(self.curves[..., list(SIDES[name])]) for name in CURVES}
+        floors[DENSITY] = float(np.nanmean(self._between_densities()))
         for name, values in self.scalars.items():
             known = np.array(values)[np.isfinite(values)]
-            found[name] = float(known.std(ddof=1)) if known.size > 1 else np.nan
-        return found
+            floors[name] = float(known.std(ddof=1)) if known.size > 1 else np.nan
+        return floors
 
-    def joined(self, others: Sequence[Seen]) -> Self:
+    def joined(self, others: Sequence[BedObservables]) -> Self:
         """The reference with further realisations of its bed; curves join those of repeats only."""
         if not others:
             return self
-        curves = [*self.curves, *(one.curves for one in others)] if self.repeated else self.curves
+        curves = [*self.curves, *(bed.curves for bed in others)] if self.repeated else self.curves
         scalars = {
-            name: (*values, *(one.scalars[name] for one in others if name in one.scalars))
+            name: (*values, *(bed.scalars[name] for bed in others if name in bed.scalars))
             for name, values in self.scalars.items()
         }
-        densities = np.stack([*self.densities, *(one.densities for one in others)])
+        densities = np.stack([*self.densities, *(bed.densities for bed in others)])
         return replace(self, curves=stacked(list(curves)), densities=densities, scalars=scalars)
 
     def _between_densities(self) -> Array:
@@ -119,25 +119,25 @@ class Reference:
         return distances(table, mean_of_others(table, group))
 
 
-def seen_errors(reference: Reference, one: Seen) -> Row:
+def bed_errors(reference: Reference, bed: BedObservables) -> Row:
     """Errors of all observables of a simulated bed, as columns."""
     return (
-        curve_errors(reference, one.curves[None, None])
-        | density_errors(reference, one.densities[None])
-        | scalar_errors(reference, one.scalars)
+        curve_errors(reference, bed.curves[None, None])
+        | density_errors(reference, bed.densities[None])
+        | scalar_errors(reference, bed.scalars)
     )
 
 
 def curve_errors(reference: Reference, curves: Array) -> Row:
     """Root-mean-square differences from the reference's curves, with 95 % intervals.
 
-    An exact mean of all realisations has one noise floor, another realisation has sqrt(2).
+    The exact mean of all realisations has an error of 1 noise floor, a further realisation of sqrt(2).
 
     Parameters
     ----------
     reference : Reference
     curves : (n_draws, n_curves or 1, n_frames, 4) array
-        Of a chain or another bed, at the reference's frames [1]; more than one draw of a Monte Carlo.
+        Of a chain or another bed, at the reference's frames [1]; several draws of a Monte Carlo.
 
     Returns
     -------
@@ -147,16 +147,16 @@ def curve_errors(reference: Reference, curves: Array) -> Row:
     shape = (len(curves), *reference.curves.shape)
     error = np.broadcast_to(curves, shape) - reference.curves[None]
     error = error.reshape(-1, *shape[2:])
-    own = np.tile(np.arange(shape[1]), shape[0])
-    run = own if reference.repeated else np.zeros(len(own), np.int64)
+    curve = np.tile(np.arange(shape[1]), shape[0])
+    run = curve if reference.repeated else np.zeros(len(curve), np.int64)
     weights = resampled(run, REPLICATES, np.random.default_rng(INTERVAL_SEED))
     floors = reference.floors()
-    found: Row = {}
+    row: Row = {}
     for name in CURVES:
         part = error[..., list(SIDES[name])]
         ends = interval(rms, part, weights)
-        found |= columns(name, float(rms(part)), ends, floors[name])
-    return found
+        row |= columns(name, float(rms(part)), ends, floors[name])
+    return row
 
 
 def density_errors(reference: Reference, densities: Array) -> Row:
@@ -175,12 +175,12 @@ def density_errors(reference: Reference, densities: Array) -> Row:
     """
     runs, halves, n_cells = reference.densities.shape
     shape = (len(densities), runs, halves, n_cells)
-    one, two = (np.broadcast_to(part, shape) for part in (densities[:, None], reference.densities[None]))
-    found = distances(one.reshape(-1, 1, n_cells), two.reshape(-1, 1, n_cells)).ravel()
+    pair = (np.broadcast_to(part, shape) for part in (densities[:, None], reference.densities[None]))
+    errors = distances(*(part.reshape(-1, 1, n_cells) for part in pair)).ravel()
     rng = np.random.default_rng(INTERVAL_SEED)
-    means = rng.choice(found, (REPLICATES, found.size)).mean(axis=1)
+    means = rng.choice(errors, (REPLICATES, errors.size)).mean(axis=1)
     low, high = band(means)
-    return columns(DENSITY, float(found.mean()), (float(low), float(high)), reference.floors()[DENSITY])
+    return columns(DENSITY, float(errors.mean()), (float(low), float(high)), reference.floors()[DENSITY])
 
 
 def scalar_errors(reference: Reference, scalars: dict[str, float]) -> Row:
@@ -195,11 +195,11 @@ def scalar_errors(reference: Reference, scalars: dict[str, float]) -> Row:
     Returns
     -------
     dict
-        As `columns`; the interval is what the difference of a single further realisation from the mean of n
-        would be given (Student's t, n - 1 degrees of freedom), NaN without repeats.
+        As `columns`; the interval is that of the difference between a single further realisation and the mean
+        of n (Student's t, n - 1 degrees of freedom), NaN without repeats.
     """
     floors = reference.floors()
-    found: Row = {}
+    row: Row = {}
     for name in SCALARS:
         known = np.array(reference.scalars.get(name, ()), float)
         known = known[np.isfinite(known)]
@@ -209,8 +209,8 @@ def scalar_errors(reference: Reference, scalars: dict[str, float]) -> Row:
         if known.size > 1:
             quantile = float(stats.t.ppf((1 + LEVEL) / 2, known.size - 1))
             half = quantile * floors[name] * np.sqrt(1 + 1 / known.size)
-        found |= columns(name, error, (error - half, error + half), floors[name])
-    return found
+        row |= columns(name, error, (error - half, error + half), floors[name])
+    return row
 
 
 def columns(name: str, error: float, ends: tuple[float, float], floor: float) -> Row:

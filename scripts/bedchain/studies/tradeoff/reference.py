@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""What a simulated bed is seen to do, and all realisations of one as the reference."""
+"""Observables of a simulated bed over the comparison window, and the reference from all realisations."""
 
 from collections.abc import Sequence
 from pathlib import Path
@@ -14,9 +14,9 @@ from bedchain.dem.series import read_series
 from bedchain.measures.batch import share_by_cell
 from bedchain.measures.dispersion import dispersion_by_height
 from bedchain.measures.mixing import Splits
+from bedchain.studies.marked_starts import Start
 from bedchain.studies.scan import observed_curves
-from bedchain.studies.scores.marked_starts import Start
-from bedchain.studies.scores.tested_chain import SPAN_S
+from bedchain.studies.scores.predictions import SPAN_S
 from bedchain.studies.tradeoff.observables import Reference
 from bedchain.trajectory.frames import Lag
 from bedchain.trajectory.grid import Grid
@@ -24,7 +24,7 @@ from bedchain.trajectory.realisations import Realisation, part_of
 from bedchain.uncertainty.deviations import stacked
 
 Array = NDArray[np.float64]
-# groups count as mixed once so much of the difference between them is left
+# share of the difference between two groups at which they count as mixed
 MIXED = float(np.exp(-1.0))
 
 
@@ -43,13 +43,13 @@ def own_grid(run: Realisation, case: Case) -> Grid:
     return Grid(run.width_m, run.height_m, case["cells"]["columns"], case["cells"]["rows"])
 
 
-def curves_seen(run: Realisation, case: Case) -> Array:
+def window_curves(run: Realisation, case: Case) -> Array:
     """Mixing curves of a run over the comparison window, from the frame after its start, (n_frames, 4)."""
     which = compared(run, case)
     return observed_curves(run, Start(0, 0, which.start, which.stop - 1), splits_of(case))[1:]
 
 
-def densities_seen(run: Realisation, case: Case) -> Array:
+def window_densities(run: Realisation, case: Case) -> Array:
     """Mean shares in the case's cells over either half of the comparison window, (2, n_cells)."""
     grid, which = own_grid(run, case), compared(run, case)
     half = which.start + 1 + (which.stop - 1 - which.start) // 2
@@ -61,14 +61,14 @@ def densities_seen(run: Realisation, case: Case) -> Array:
     )
 
 
-def scalars_seen(run: Realisation, series: pd.DataFrame | None, case: Case) -> dict[str, float]:
-    """What a bed does as a whole over the comparison window.
+def window_scalars(run: Realisation, series: pd.DataFrame | None, case: Case) -> dict[str, float]:
+    """Observables of the bed as a whole over the comparison window.
 
     Parameters
     ----------
     run : Realisation
     series : DataFrame or None
-        ``bed_series.csv``; None where it was not kept.
+        ``bed_series.csv``; None where it is missing.
     case : Case
 
     Returns
@@ -78,8 +78,8 @@ def scalars_seen(run: Realisation, series: pd.DataFrame | None, case: Case) -> d
         mixing time after the end of the window.
     """
     which, grid = compared(run, case), own_grid(run, case)
-    curves = np.vstack((np.ones(4), curves_seen(run, case)))
-    found = {
+    curves = np.vstack((np.ones(4), window_curves(run, case)))
+    scalars = {
         "mixing_time_radial": mixing_time(curves[:, 0], curves[:, 1], run.interval_s),
         "mixing_time_axial": mixing_time(curves[:, 2], curves[:, 3], run.interval_s),
     }
@@ -89,42 +89,42 @@ def scalars_seen(run: Realisation, series: pd.DataFrame | None, case: Case) -> d
     weights, filled = layers.displacements, layers.displacements > 0
     for column, axis in enumerate("xz"):
         values = layers.dispersion_m2_s[filled, column]
-        found[f"dispersion_{axis}"] = float(np.average(values, weights=weights[filled]))
+        scalars[f"dispersion_{axis}"] = float(np.average(values, weights=weights[filled]))
     if run.has_velocities:
         cells = np.stack([grid.cell_of(*places) for places in zip(x, z, strict=True)])
-        found["granular_temperature"] = granular_temperature(cells, vx, vz, grid.n_cells)
-    return found | ({} if series is None else series_scalars(series, case))
+        scalars["granular_temperature"] = granular_temperature(cells, vx, vz, grid.n_cells)
+    return scalars | ({} if series is None else series_scalars(series, case))
 
 
 def series_scalars(series: pd.DataFrame, case: Case) -> dict[str, float]:
     """Mean height of the particles, pressure drop and its standard deviation over the comparison window."""
     part = series[series["time_s"].between(case["comparison"]["start_s"], case["comparison"]["end_s"])]
-    found = {"bed_height": float(part["mean_height_m"].mean())}
+    scalars = {"bed_height": float(part["mean_height_m"].mean())}
     if "pressure_drop_Pa" in part:
         pressure = part["pressure_drop_Pa"]
-        found |= {"pressure_drop": float(pressure.mean()), "pressure_drop_spread": float(pressure.std())}
-    return found
+        scalars |= {"pressure_drop": float(pressure.mean()), "pressure_drop_spread": float(pressure.std())}
+    return scalars
 
 
-def mixing_time(one: Array, other: Array, interval_s: float) -> float:
-    """Time after which the difference between two groups that began apart has fallen to 1/e [s].
+def mixing_time(first: Array, second: Array, interval_s: float) -> float:
+    """Time after which the difference between two groups, apart at the start, has fallen to 1/e [s].
 
-    The difference is that of the groups' shares on the side of the first, ``one + other - 1``: 1 at the
+    The difference is that of the groups' shares on the side of the first, ``first + second - 1``: 1 at the
     start, 0 once both are spread alike.
 
     Parameters
     ----------
-    one, other : (n_frames,) array
-        Share of either group that is still on its side, from the start on [1].
+    first, second : (n_frames,) array
+        Share of each group that is still on its side, from the start on [1].
     interval_s : float
         Between frames [s].
 
     Returns
     -------
     float
-        By a straight line between two frames; NaN where it has not fallen so far.
+        By a straight line between two frames; NaN where it never falls to 1/e.
     """
-    apart = one + other - 1.0
+    apart = first + second - 1.0
     below = np.flatnonzero(apart <= MIXED)
     if not below.size or below[0] == 0:
         return float("nan")
@@ -148,8 +148,8 @@ def granular_temperature(
     Returns
     -------
     float
-        Of x and z alike (two components of three), each cell by its degrees of freedom, its particles
-        less one; NaN where no cell holds two.
+        Mean of the components x and z, weighted by the degrees of freedom of each cell (its particles less
+        one); NaN where no cell holds two.
     """
     squares = freedom = 0.0
     for places, *velocity in zip(cells, vx, vz, strict=True):
@@ -169,19 +169,19 @@ def realisations(
     case: Case,
     starts: Sequence[Start],
 ) -> Reference:
-    """The reference of a case.
+    """The reference of a case, from its run and repeats.
 
     Parameters
     ----------
     runs : sequence of Realisation
-        The run, and the repeats whose positions are there.
+        The run, and those repeats whose positions are there.
     series : sequence of Path
         ``bed_series.csv`` of each of them.
     mixing : sequence of Path
         ``mixing.csv`` of all repeats; may be empty.
     case : Case
     starts : sequence of Start
-        Of the run: without repeats each gives a curve, with repeats the first one alone.
+        Of the run: without repeats each gives a curve, with repeats only the first.
 
     Returns
     -------
@@ -200,9 +200,9 @@ def realisations(
         curves = [
             curves[0], *(curves_of(table, table["source"].iloc[0], n_times)[1:] for table in tables)
         ]  # fmt: skip
-    seen = [
-        scalars_seen(run, read_series(file), case) for run, file in zip(runs, series, strict=True)
+    of_runs = [
+        window_scalars(run, read_series(file), case) for run, file in zip(runs, series, strict=True)
     ]  # fmt: skip
-    scalars = {name: tuple(one[name] for one in seen if name in one) for name in seen[0]}
-    densities = np.stack([densities_seen(run, case) for run in runs])
+    scalars = {name: tuple(of_run[name] for of_run in of_runs if name in of_run) for name in of_runs[0]}
+    densities = np.stack([window_densities(run, case) for run in runs])
     return Reference(stacked(curves), bool(mixing), densities, scalars)

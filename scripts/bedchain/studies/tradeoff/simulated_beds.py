@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Simulate variants of a bed, some side by side, and measure cost and errors of each."""
+"""Cost and errors of the variants of a bed, simulated side by side."""
 
 import logging
 import threading
@@ -17,8 +17,8 @@ from bedchain.errors import UserError
 from bedchain.files import write_text
 from bedchain.meter import peak_memory_mb
 from bedchain.studies.tradeoff.bed_variants import REALISATION, BedVariant
-from bedchain.studies.tradeoff.observables import Reference, Seen, seen_errors
-from bedchain.studies.tradeoff.reference import curves_seen, densities_seen, scalars_seen
+from bedchain.studies.tradeoff.observables import BedObservables, Reference, bed_errors
+from bedchain.studies.tradeoff.reference import window_curves, window_densities, window_scalars
 from bedchain.trajectory.realisations import Realisation, open_realisation
 from bedchain.trajectory.store import read_manifest, write_trajectory
 
@@ -37,72 +37,75 @@ PEAK_FILE = "peak_memory_mb"
 def simulate_all(
     case_file: Path, wanted: Sequence[BedVariant], folder: Path, reference: Reference, at_once: int
 ) -> list[Row]:
-    """Rows of all variants, in their order; one that fails is a row with its reason.
+    """Rows of all variants, in their order; a variant that fails has the reason in its row.
 
     Parameters
     ----------
     case_file : Path
-        The case that they vary.
+        The case of which they are variants.
     wanted : sequence of BedVariant
     folder : Path
-        Gets a folder for each of them, whose finished segments are taken up again after a stop.
+        Gets a folder for each variant; after a stop its finished segments are used again.
     reference : Reference
-        The run and its repeats; those variants that are further realisations of the same bed join them.
+        Of the run and its repeats; variants that are realisations of the same bed join it.
     at_once : int
         Variants side by side, on one rank each.
 
     Returns
     -------
     list of dict
-        One a variant: what it is, cost, errors, ``problem`` (empty where all went well).
+        One for each variant: labels, cost, errors, ``problem`` (empty without one).
     """
-    begun, rows, found = time.monotonic(), {}, {}
+    begun, rows, beds = time.monotonic(), {}, {}
     with ThreadPoolExecutor(max_workers=at_once) as executor:
-        jobs = {executor.submit(bed_row, case_file, one, folder / one.variant.name): one for one in wanted}
+        jobs = {executor.submit(bed_row, case_file, bed, folder / bed.variant.name): bed for bed in wanted}
         try:
             for number, job in enumerate(as_completed(jobs), 1):
-                name, (row, bed) = jobs[job].variant.name, job.result()
+                name, (row, observables) = jobs[job].variant.name, job.result()
                 rows[name] = row
-                if bed:
-                    found[name] = bed
+                if observables:
+                    beds[name] = observables
                 left_s = (time.monotonic() - begun) / number * (len(wanted) - number)
-                said = row["problem"].splitlines()[0] if row["problem"] else f"{row['cost_s']:.0f} s"
-                LOG.info("%d of %d beds, %s: %s; about %.0f s left", number, len(wanted), name, said, left_s)
+                outcome = row["problem"].splitlines()[0] if row["problem"] else f"{row['cost_s']:.0f} s"
+                LOG.info(
+                    "%d of %d beds, %s: %s; about %.0f s left", number, len(wanted), name, outcome, left_s
+                )
         except BaseException:
             executor.shutdown(wait=False, cancel_futures=True)
             raise
-    alike = [one.variant.name for one in wanted if one.axis == REALISATION and one.variant.name in found]
-    for name, bed in found.items():
-        # nothing is compared with itself
-        rows[name] |= seen_errors(reference.joined([found[other] for other in alike if other != name]), bed)
-    return [rows[one.variant.name] for one in wanted]
+    alike = [bed.variant.name for bed in wanted if bed.axis == REALISATION and bed.variant.name in beds]
+    for name, observables in beds.items():
+        # no bed is compared with itself
+        others = [beds[other] for other in alike if other != name]
+        rows[name] |= bed_errors(reference.joined(others), observables)
+    return [rows[bed.variant.name] for bed in wanted]
 
 
-def bed_row(case_file: Path, one: BedVariant, folder: Path) -> tuple[Row, Seen | None]:
-    """Simulate one variant, or go on with it: what it is and cost, and what it did where all went well."""
-    labels = {"half": HALF, "axis": one.axis, "variant": one.variant.name, "changed": one.changed}
+def bed_row(case_file: Path, bed: BedVariant, folder: Path) -> tuple[Row, BedObservables | None]:
+    """Row of one variant, simulated or gone on with, and its observables (None where it failed)."""
+    labels = {"half": HALF, "axis": bed.axis, "variant": bed.variant.name, "changed": bed.changed}
     try:
         case, memory_mb = watched(
-            lambda: simulate(case_file, on_one_rank(one.variant), folder), str(folder), folder / PEAK_FILE
+            lambda: simulate(case_file, on_one_rank(bed.variant), folder), str(folder), folder / PEAK_FILE
         )
         wall_s = sum(part["wall_s"] for part in read_manifest(folder / "dem.json")["segments"])
         cost = {"run_s": wall_s, "cost_s": wall_s, "memory_mb": memory_mb}
-        return labels | cost | {"problem": ""}, seen(folder, case)
+        return labels | cost | {"problem": ""}, bed_observables(folder, case)
     except UserError as error:
         return labels | {"problem": str(error)}, None
 
 
 def on_one_rank(variant: Variant) -> Variant:
-    """The variant, its gas cells not asked to share between ranks."""
+    """The variant on one rank, so that its gas cells need not divide between ranks."""
     return Variant(variant.name, dict(variant.changes) | {"run.ranks": 1})
 
 
-def seen(folder: Path, case: Case) -> Seen:
-    """What a finished run did; its trajectory is not kept."""
+def bed_observables(folder: Path, case: Case) -> BedObservables:
+    """Observables of a finished run; its trajectory is deleted."""
     try:
         run = parsed(folder, case)
-        scalars = scalars_seen(run, read_series(folder / "bed_series.csv"), case)
-        return Seen(curves_seen(run, case), densities_seen(run, case), scalars)
+        scalars = window_scalars(run, read_series(folder / "bed_series.csv"), case)
+        return BedObservables(window_curves(run, case), window_densities(run, case), scalars)
     finally:
         for name in ("trajectory.npy", "trajectory.json"):
             (folder / name).unlink(missing_ok=True)

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""What must be kept: the gas's volume, momentum of gas and particles together, particles, falling energy."""
+"""Conservation: volume of the gas, momentum of gas and particles together, particles, falling energy."""
 
 from pathlib import Path
 
@@ -118,5 +118,5 @@ def check_balances(work: Path, solver: Path, figures: Path) -> list[Row]:
 
 
 def check(work: Path, solver: Path, figures: Path) -> list[Row]:
-    """Rows and figures of both."""
+    """Rows and figures of the falling and the blown heap."""
     return check_settling(work, figures) + check_balances(work, solver, figures)

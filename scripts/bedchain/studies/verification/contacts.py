@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Contacts alone: two spheres that collide head on, and one that slides on the bottom until it rolls."""
+"""Contacts alone: two spheres that collide head on, and a sphere that slides on the bottom until it rolls."""
 
 from pathlib import Path
 from typing import Any
@@ -30,7 +30,7 @@ LATE = 0.7  # share of `SLIDE` after which the sphere rolls, resisted or not
 
 
 def case_sections(frame_s: float, **contact: float | str) -> dict[str, dict[str, Any]]:
-    """Sections of the case file that both checks share."""
+    """Sections of the case file that the checks share."""
     return {
         "bed": {"width_m": WIDTH, "height_m": HEIGHT},
         "particles": {"density_kg_m3": DENSITY, "diameter_m": SPHERE},
@@ -39,20 +39,23 @@ def case_sections(frame_s: float, **contact: float | str) -> dict[str, dict[str,
     }
 
 
+def head_on(folder: Path, diameter: float, span: float, sections: dict[str, dict[str, Any]]) -> np.ndarray:
+    """Frames of a head-on impact of a sphere on one of a diameter [m], without weight, (n_frames, 2, 6)."""
+    gap = 0.5 * (SPHERE + diameter) + 1e-4
+    spheres = np.array([[0.008, 0.01, SPEED, 0, SPHERE], [0.008 + gap, 0.01, -SPEED, 0, diameter]])
+    return run_particles(Setup(folder, sections, spheres, {"gravity": 0.0}), span)
+
+
 def impact(work: Path, restitution: float) -> np.ndarray:
-    """Velocities along x [m/s] of the two spheres before and after, (2, 2), without weight."""
-    gap = 0.5 * (SPHERE + LARGE) + 1e-4
-    spheres = np.array([[0.008, 0.01, SPEED, 0, SPHERE], [0.008 + gap, 0.01, -SPEED, 0, LARGE]])
-    folder = work / f"impact_{restitution:g}"
+    """Velocities along x [m/s] of two unequal spheres before and after an impact, (2, 2)."""
     sections = case_sections(2e-3, restitution_1=restitution)
-    frames = run_particles(Setup(folder, sections, spheres, {"gravity": 0.0}), 2e-3)
-    return frames[[0, -1], :, 3]
+    return head_on(work / f"impact_{restitution:g}", LARGE, 2e-3, sections)[[0, -1], :, 3]
 
 
 def check_impact(work: Path, figures: Path) -> list[Row]:
     """Rows and figure of the head-on impact of unequal spheres."""
     masses = np.array([SPHERE, LARGE]) ** 3
-    rows, found = [], []
+    rows, ratios = [], []
     for restitution in RESTITUTIONS:
         before, after = impact(work, restitution)
         ratio = (after[1] - after[0]) / (before[0] - before[1])
@@ -63,18 +66,18 @@ def check_impact(work: Path, figures: Path) -> list[Row]:
         )
         quantity = f"momentum change in it over the momentum of either way, {restitution:g} [1]"
         rows.append(Row(quantity, change, 0, ROUND_OFF, "Newton's third law"))
-        found.append(ratio)
+        ratios.append(ratio)
     given = np.array(RESTITUTIONS)
-    curve = Curve("head-on impact", given, np.array(found), given)
+    curve = Curve("head-on impact", given, np.array(ratios), given)
     draw(figures / "impact", [curve], "restitution given [1]", "restitution recovered [1]")
     return rows
 
 
 def deepest_overlap(law: str) -> float:
-    """How deep two equal spheres without damping go into each other [m].
+    """Largest overlap of two equal spheres without damping [m], by theory.
 
-    Hertz by its energy (Johnson 1985, Contact Mechanics, ch. 11); Hooke's spring, as stiff as Hertz's in an
-    impact at the speed sqrt(g W), in proportion to the speed.
+    Hertz: by the energy (Johnson 1985, Contact Mechanics, ch. 11). Hooke: in proportion to the speed, with a
+    spring as stiff as that of Hertz in an impact at the speed sqrt(g W).
     """
     mass = DENSITY * np.pi / 6 * SPHERE**3 / 2  # reduced, as is the radius of the contact
     stiffness = 16 / 15 * MODULUS * (SPHERE / 4) ** 0.5
@@ -84,18 +87,16 @@ def deepest_overlap(law: str) -> float:
 
 
 def check_overlap(work: Path) -> list[Row]:
-    """Rows of how deep equal spheres go into each other by either law."""
+    """Rows of the largest overlap of equal spheres by either law."""
     rows = []
     for law in LAWS:
-        gap = SPHERE + 1e-4
-        spheres = np.array([[0.008, 0.01, SPEED, 0, SPHERE], [0.008 + gap, 0.01, -SPEED, 0, SPHERE]])
         sections = case_sections(FINE_FRAME, restitution_1=1.0, law=law)
-        frames = run_particles(Setup(work / f"overlap_{law}", sections, spheres, {"gravity": 0.0}), SQUEEZE)
-        found = SPHERE - np.diff(frames[:, :, 1]).min()
+        frames = head_on(work / f"overlap_{law}", SPHERE, SQUEEZE, sections)
+        deepest = SPHERE - np.diff(frames[:, :, 1]).min()
         theory = deepest_overlap(law)
         source = "energy of the spring; hooke: as deep as hertz at sqrt(g W), in proportion to the speed"
         quantity = f"largest overlap of an impact by {law} over the diameter [1]"
-        rows.append(Row(quantity, found / SPHERE, theory / SPHERE, NEAR, source))
+        rows.append(Row(quantity, deepest / SPHERE, theory / SPHERE, NEAR, source))
     return rows
 
 
@@ -148,5 +149,5 @@ def check_rolling(work: Path, figures: Path) -> list[Row]:
 
 
 def check(work: Path, solver: Path, figures: Path) -> list[Row]:
-    """Rows and figures of both; they need no gas."""
+    """Rows and figures of all contacts; they need no gas."""
     return check_impact(work, figures) + check_overlap(work) + check_rolling(work, figures)

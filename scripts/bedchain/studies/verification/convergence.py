@@ -81,7 +81,7 @@ def grid_error(work: Path, solver: Path, cells: int) -> float:
 
 
 def order(errors: np.ndarray) -> float:
-    """Order by the two finest of a series in which each is half as wide as the one before."""
+    """Order by the last two errors of a series in which each width is half of that before."""
     return float(np.log2(errors[-2] / errors[-1]))
 
 

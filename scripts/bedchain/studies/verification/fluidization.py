@@ -31,7 +31,7 @@ UP, DOWN = (0.0, RAMP), (RAMP + HOLD, 2 * RAMP + HOLD)
 
 
 def fitted_onset(table: pd.DataFrame, span: tuple[float, float], weight: float, guess: float) -> float:
-    """Velocity at which the packed bed's own curve, a U + b U^2, reaches the weight per area [m/s].
+    """Velocity at which the curve of the packed bed, a U + b U^2, reaches the weight per area [m/s].
 
     Parameters
     ----------
@@ -42,7 +42,7 @@ def fitted_onset(table: pd.DataFrame, span: tuple[float, float], weight: float, 
     weight : float
         Weight per area [Pa].
     guess : float
-        Rough minimum fluidization velocity [m/s], which tells the packed part of the curve.
+        Rough minimum fluidization velocity [m/s], to find the packed part of the curve.
     """
     speed, drop = table["inlet_velocity_m_s"].to_numpy(), table["pressure_drop_Pa"].to_numpy()
     part = table["time_s"].between(*span).to_numpy()
@@ -61,7 +61,7 @@ def ramped_bed(work: Path, solver: Path) -> tuple[Setup, pd.DataFrame]:
 
 
 def voidage_under_gas(frames: np.ndarray, at_rest: int, table: pd.DataFrame, of: Suspension) -> float:
-    """Bulk voidage at the fast end of the packed part [1]: contacts that gas unloads loosen the bed.
+    """Bulk voidage at the fast end of the packed part [1], where gas unloads contacts and loosens the bed.
 
     Parameters
     ----------
@@ -95,7 +95,7 @@ def curve_of(
 
 
 def plateau(table: pd.DataFrame, weight: float) -> Row:
-    """What carries the fluidized bed: the gas, a little the walls, and the bed's own slowing down."""
+    """Row of the weight carried on the plateau: by the gas, a little by the walls, less the bed's inertia."""
     held = table[table["time_s"].between(RAMP, RAMP + HOLD)]
     times = held["time_s"].to_numpy()
     rising = np.gradient(held["mean_height_m"].to_numpy(), times)

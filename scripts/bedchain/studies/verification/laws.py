@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Drag laws and packed-bed formulas, written from the papers and apart from the solver's own.
+"""Drag laws and packed-bed formulas, written from the papers independently of the solver.
 
 All drag laws have the form of the papers, a coefficient beta per volume of bed (force per volume
 beta * slip, slip between the particles, model A); one sphere's share is ``beta * volume / (1 - e)``.

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Figures of the checks: what the solver gives as marks, what it should give as lines."""
+"""Figures of the checks: values of the solver as marks, the theory as lines."""
 
 from dataclasses import dataclass
 from pathlib import Path
@@ -57,7 +57,7 @@ def draw(
     logarithmic : bool
         Both axes.
     line : str
-        What the lines are, for the legend.
+        Name of the lines in the legend.
     """
     with figure_style():
         figure, axes = plt.subplots(figsize=(SINGLE_COLUMN_IN, 0.8 * SINGLE_COLUMN_IN))

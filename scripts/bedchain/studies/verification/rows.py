@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Rows of the verification table: a value, what it should be, and how near that is near enough."""
+"""Rows of the verification table: a value, its reference and the tolerance."""
 
 import math
 from dataclasses import dataclass
@@ -9,16 +9,16 @@ import pandas as pd
 
 @dataclass(frozen=True)
 class Row:
-    """One asserted quantity.
+    """A checked quantity.
 
     Attributes
     ----------
     quantity : str
-        What it is, with its unit in brackets.
+        Name, with its unit in brackets.
     value : float
-        As the solver has it.
+        Of the solver.
     reference : float
-        As the theory has it.
+        Of the theory.
     tolerance : float
         Largest difference allowed: relative to the reference, absolute where the reference is 0.
     source : str
@@ -33,7 +33,7 @@ class Row:
 
     @property
     def passed(self) -> bool:
-        """Whether the value is near enough; never for a NaN."""
+        """Whether the value is within the tolerance; never for a NaN."""
         scale = abs(self.reference) if self.reference else 1.0
         return math.isfinite(self.value) and abs(self.value - self.reference) <= self.tolerance * scale
 

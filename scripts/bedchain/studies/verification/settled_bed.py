@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Gas through a settled random bed held in place: pressure drop by its own voidage, flow at its surface."""
+"""Gas through a settled random bed held in place: pressure drop by its voidage, flow at the surface."""
 
 from pathlib import Path
 from typing import NamedTuple
@@ -26,7 +26,7 @@ SOURCE = "Ergun 1952, Chem. Eng. Prog. 48, 89, eq. (11), over rows of the voidag
 
 
 class Flow(NamedTuple):
-    """What the gas does at one velocity.
+    """Pressure and flow of the gas at one velocity.
 
     Attributes
     ----------
@@ -54,17 +54,17 @@ def random_bed(folder: Path, width: float, height: float, number: int, **contact
 
 
 def settled(work: Path, name: str, heap: Setup, numbers: dict[str, float]) -> Setup:
-    """The same spheres after the fall, at rest, as the start of a case of its own."""
+    """The spheres at rest after the fall, as the start of another case."""
     last = run_particles(heap, SETTLE)[-1]
     return Setup(work / name, heap.sections, spheres_at_rest(last[:, 1], last[:, 2], DIAMETER), numbers)
 
 
 def rows_of(case: Path, name: str) -> np.ndarray:
     """A field of the gas by rows of cells from the bottom up, (n_rows, n_columns[, 3])."""
-    found = read_gas_field(case, name)
-    heights = found.z_m.round(6)
-    order = np.lexsort((found.x_m, heights))
-    return np.asarray(found.values[order].reshape(len(set(heights)), -1, *found.values.shape[1:]))
+    field = read_gas_field(case, name)
+    heights = field.z_m.round(6)
+    order = np.lexsort((field.x_m, heights))
+    return np.asarray(field.values[order].reshape(len(set(heights)), -1, *field.values.shape[1:]))
 
 
 def flow_through(bed: Setup, solver: Path, velocity: float) -> Flow:
@@ -94,12 +94,12 @@ def check(work: Path, solver: Path, figures: Path) -> list[Row]:
     for velocity in VELOCITIES:
         flow, of = flow_through(bed, solver, velocity), suspension(bed)
         whole, part = (expected_drop(of, z, planes, velocity) for planes in (edges, centres))
-        found = flow.pressure[inside[0]] - flow.pressure[inside[-1]]
+        drop = flow.pressure[inside[0]] - flow.pressure[inside[-1]]
         off = float(np.abs(flow.carried - 1).max())
         name = f"settled bed at {velocity:g} m/s"
         rows += [
             Row(f"{name}: pressure drop [Pa]", flow.drop, whole, NEAR, SOURCE),
-            Row(f"{name}: pressure drop between rows inside [Pa]", found, part, NEAR_INSIDE, SOURCE),
+            Row(f"{name}: pressure drop between rows inside [Pa]", drop, part, NEAR_INSIDE, SOURCE),
             Row(
                 f"{name}: largest gap of a row's flow from that given [1]", off, 0, NEAR_FLOW, "div(e U) = 0"
             ),

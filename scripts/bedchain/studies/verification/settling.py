@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""A lone sphere falls through gas at rest: its speed over time and in the end, for each drag law."""
+"""Fall of a single sphere through gas at rest: speed over time and terminal speed, for each drag law."""
 
 from pathlib import Path
 from typing import Any
@@ -23,14 +23,14 @@ ALONE = 1 - 1e-9  # voidage around one sphere
 
 
 def falling_speed(law: Law, of: Suspension, times: np.ndarray) -> np.ndarray:
-    """Speed of a sphere that starts at rest [m/s], by an integration of its own."""
+    """Speed of a sphere that starts at rest [m/s], integrated with scipy."""
 
     def gain(_: float, speed: np.ndarray) -> list[float]:
         drag = drag_coefficient(law, of, ALONE, speed[0]) * speed[0]
         return [(of.weight - drag) / of.mass]
 
-    found = solve_ivp(gain, (0, times[-1]), [0.0], t_eval=times, rtol=1e-9, atol=1e-12)
-    return np.asarray(found.y[0])
+    solution = solve_ivp(gain, (0, times[-1]), [0.0], t_eval=times, rtol=1e-9, atol=1e-12)
+    return np.asarray(solution.y[0])
 
 
 def terminal_speed(law: Law, of: Suspension) -> float:
@@ -39,7 +39,7 @@ def terminal_speed(law: Law, of: Suspension) -> float:
 
 
 def setup_of(folder: Path, law: str, step: float = STEP) -> Setup:
-    """One light sphere in a wide, high and thick box, with a step of the gas [s]."""
+    """A light sphere in a wide, high and thick box, with a step of the gas [s]."""
     sections: dict[str, dict[str, Any]] = {
         "bed": {"width_m": WIDTH, "height_m": HEIGHT, "thickness_m": THICKNESS},
         "particles": {"density_kg_m3": 1000.0},
@@ -73,7 +73,7 @@ def speed_gap(work: Path, solver: Path, step: float, duration: float) -> float:
 
 
 def check(work: Path, solver: Path, figures: Path) -> list[Row]:
-    """Rows and figure of the lone sphere."""
+    """Rows and figure of the falling sphere."""
     rows, curves = [], []
     for name, law in LAWS.items():
         setup = setup_of(work / f"settling_{name}", name)

@@ -46,21 +46,21 @@ def verify(
     solver : Path
         bedFoam.
     folder : Path
-        Gets the table, the figures and ``work/`` with every case that was run.
+        Gets the table, the figures and ``work/`` with all cases.
     only : iterable of str
-        Names of checks; none means all.
+        Names of checks; empty for all.
     say : callable
-        Gets a line for each check.
+        Called with a line for each check.
 
     Returns
     -------
     DataFrame
-        The table, one row an asserted quantity.
+        A row for each checked quantity.
 
     Raises
     ------
     UserError
-        There is no check of a name, or no solver.
+        Unknown check, or no solver.
     """
     names = list(only) or list(CHECKS)
     if unknown := sorted(set(names) - set(CHECKS)):
@@ -70,10 +70,10 @@ def verify(
     rows: list[Row] = []
     for name in names:
         start = time.monotonic()
-        found = CHECKS[name](folder / "work", solver, folder / "figures")
-        passed = sum(row.passed for row in found)
-        say(f"{name}: {passed} of {len(found)} rows pass, {time.monotonic() - start:.0f} s")
-        rows += found
+        of_check = CHECKS[name](folder / "work", solver, folder / "figures")
+        passed = sum(row.passed for row in of_check)
+        say(f"{name}: {passed} of {len(of_check)} rows pass, {time.monotonic() - start:.0f} s")
+        rows += of_check
     table = table_of(rows)
     write_csv(table, folder / "verification.csv")
     return table

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""A uniform suspension sinks in a box closed below: the gas that it displaces must rise through it.
+"""A uniform suspension that sinks in a box closed below, so that the displaced gas rises through it.
 
 With spheres sinking at w, the closed gas balance gives the gas a velocity ``(1 - e) w / e`` upwards and a
 slip ``w / e``. Without d(voidage)/dt in the balance the gas would stay at rest and the spheres sink faster.
@@ -32,15 +32,15 @@ SOURCE = (
 
 
 def sinking_speed(of: Suspension, e: float, times: np.ndarray) -> np.ndarray:
-    """Speed of the suspension [m/s] at these times [s], by an integration of its own."""
+    """Speed of the suspension [m/s] at these times [s], integrated with scipy."""
     inertia = of.mass + of.gas_density * of.volume * (1 - e) / e
 
     def gain(_: float, speed: np.ndarray) -> list[float]:
         slip = speed[0] / e
         return [(of.weight - drag_coefficient(LAWS[LAW], of, e, slip) * slip / e) / inertia]
 
-    found = solve_ivp(gain, (0, times[-1]), [0.0], t_eval=times, method="LSODA", rtol=1e-9, atol=1e-12)
-    return np.asarray(found.y[0])
+    solution = solve_ivp(gain, (0, times[-1]), [0.0], t_eval=times, method="LSODA", rtol=1e-9, atol=1e-12)
+    return np.asarray(solution.y[0])
 
 
 def run_suspension(folder: Path, solver: Path) -> tuple[np.ndarray, ...]:

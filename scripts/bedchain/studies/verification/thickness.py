@@ -54,7 +54,7 @@ def onset(bed: Setup, solver: Path, of: Suspension, thickness: float) -> tuple[f
 
 
 def check(work: Path, solver: Path, figures: Path) -> list[Row]:
-    """Rows and figure: u_mf in slabs of several thicknesses, one of them that of Hoomans et al. 1996."""
+    """Rows and figure of u_mf in slabs of several thicknesses, among them that of Hoomans et al. 1996."""
     heap = random_bed(work / "slab_settling", WIDTH, HEIGHT, NUMBER, friction_1=FRICTION)
     bed = settled(work, "slab", heap, {"frozen": 1})
     of = suspension(heap)
@@ -64,9 +64,9 @@ def check(work: Path, solver: Path, figures: Path) -> list[Row]:
     rows = []
     thicknesses = [LAYER_DISTANCE, converted, 1.0, 1.25]
     for thickness in thicknesses:
-        found, reference = onset(bed, solver, of, thickness * DIAMETER)
+        measured, reference = onset(bed, solver, of, thickness * DIAMETER)
         quantity = f"u_mf in a slab of {thickness:.3g} diameters{names.get(thickness, '')} [m/s]"
-        rows.append(Row(quantity, found, reference, NEAR, SOURCE.format(1 - solids / thickness)))
+        rows.append(Row(quantity, measured, reference, NEAR, SOURCE.format(1 - solids / thickness)))
     values, theory = (np.array([getattr(row, name) for row in rows]) for name in ("value", "reference"))
     draw(
         figures / "slab_thickness", [Curve("settled bed, held", np.array(thicknesses), values, theory)],

@@ -53,14 +53,14 @@ def check(work: Path, solver: Path, figures: Path) -> list[Row]:
     voidage = 1 - np.pi / 6
     for name, law in LAWS.items():
         setup = lattice_setup(work / f"lattice_{name}", name)
-        found = held_pressure(run_gas(setup, solver, len(VELOCITIES) * HOLD, steps_of_velocity()))
+        drops = held_pressure(run_gas(setup, solver, len(VELOCITIES) * HOLD, steps_of_velocity()))
         of = suspension(setup)
         theory = np.array([pressure_gradient(law, of, voidage, u) for u in VELOCITIES])
         if name == "gidaspow":
             theory, source = np.array([ergun_gradient(of, voidage, u) for u in VELOCITIES]), ERGUN
         else:
             source = f"{name} drag law, dp/dz = beta u / e (model A)"
-        gradient = found / HEIGHT
+        gradient = drops / HEIGHT
         for velocity, value, reference in zip(VELOCITIES, gradient, theory, strict=True):
             if name == "gidaspow" or velocity == VELOCITIES[-1]:
                 quantity = f"lattice at {velocity:.3g} m/s, {name}: pressure drop over height [Pa/m]"

@@ -58,7 +58,7 @@ def test_a_chain_that_loses_mass_is_seen(model):
     def leaky(*arguments, **options):
         return Leaky(registry.learn(*arguments, **options))
 
-    found = run_chain(model, lambda: case(columns=2, rows=2, steps=3), leaky)
+    found = run_chain(model, WalkerWindow(columns=2, rows=2, steps=3).case, leaky)
     assert found.outcome == INACCURATE
     assert found.quantity in ("mass lost [1]", "particles lost by a Monte Carlo [1]")
 
@@ -69,13 +69,13 @@ def test_probabilities_that_do_not_sum_to_one_are_refused():
         chain.matrix.data[0] += 1e-6
         return chain
 
-    found = run_chain("static", lambda: case(columns=2, rows=2, steps=3), wrong)
+    found = run_chain("static", WalkerWindow(columns=2, rows=2, steps=3).case, wrong)
     assert found.outcome == REFUSED and "off a sum of 1" in found.reason
 
 
 @pytest.mark.parametrize("name", list(registry.LEARNERS))
 def test_a_step_that_is_asked_for_twice_is_given_twice(name):
-    one = case(columns=2, rows=2)
+    one = WalkerWindow(columns=2, rows=2).case()
     options = {"separation_s": 0.1, "coarse_m": 0.01} if name == "recurrence" else {}
     chain = registry.learn(name, one.frames, Grid(WIDTH, HEIGHT, 2, 2), **options)
     everyone = np.ones((1, 400), bool)

@@ -53,7 +53,7 @@ def test_a_setting_that_breaks_is_a_verdict_and_a_users_error_is_told():
 
 def setting(name, run, group="made up", inputs="1", **more):
     """A setting that does what it is told."""
-    return Setting(group, name, {"x_1": 1.0}, Limit("x [1]", 2.0, "x < 2", 1.0), run, inputs, **more)
+    return StabilitySetting(group, name, {"x_1": 1.0}, Limit("x [1]", 2.0, "x < 2", 1.0), run, inputs, **more)
 
 
 def noting(file, verdict):

@@ -54,7 +54,7 @@ def test_further_realisations_join_the_reference():
         whole.curves[:4], True, whole.densities[:4], {"bed_height": whole.scalars["bed_height"][:4]}
     )
     others = [
-        Seen(whole.curves[at], whole.densities[at], {"bed_height": whole.scalars["bed_height"][at]})
+        BedObservables(whole.curves[at], whole.densities[at], {"bed_height": whole.scalars["bed_height"][at]})
         for at in (4, 5)
     ]
     joined = first.joined(others)

@@ -30,7 +30,7 @@ def test_a_realisation_is_not_compared_with_itself(monkeypatch, tmp_path):
 
     def bed_row(case_file, one, folder):
         name = one.variant.name
-        bed = Seen(reference.curves[0], reference.densities[0], {"bed_height": known[name]})
+        bed = BedObservables(reference.curves[0], reference.densities[0], {"bed_height": known[name]})
         return {"variant": name, "cost_s": 1.0, "problem": ""}, bed
 
     monkeypatch.setattr(simulated_beds, "bed_row", bed_row)

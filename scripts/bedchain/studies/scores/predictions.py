@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""One chain, learned on the whole learning window, against the DEM where nothing was learned: its scores."""
+"""Predictions of a chain for the held-out data, after learning on the whole learning window."""
 
 from dataclasses import dataclass
 
@@ -8,29 +8,29 @@ from numpy.typing import NDArray
 
 from bedchain.chains.chain import Chain
 from bedchain.measures.lagrangian import Places, Statistics, corrected, in_cells, statistics
+from bedchain.studies.candidates import Candidate, grid_of
+from bedchain.studies.marked_starts import Start
 from bedchain.studies.scan import Task, at_frames, learned, predicted_curves, running_cost, timed
-from bedchain.studies.scores.candidates import Candidate, grid_of
 from bedchain.studies.scores.held_out import HeldOut
-from bedchain.studies.scores.marked_starts import Start
 from bedchain.trajectory.frames import Frames
 from bedchain.trajectory.regrid import regrid
 from bedchain.uncertainty.deviations import stacked
 
 Array = NDArray[np.float64]
 
-# mixing curves are looked at so long after a start [s]
+# times after a start at which mixing curves are scored [s]
 TIMES_S = (0.1, 0.25, 0.5, 1.0, 2.0, 5.0)
-# displacements over about this time have an autocorrelation and a dispersion; shorter ones are lost in cells
+# time of the displacements of autocorrelation and dispersion [s]; over shorter times cells hide them
 SPAN_S = 0.1
-# times of the mean-square displacement, evenly spaced in their logarithms
+# number of times of the mean-square displacement, evenly spaced in their logarithms
 LAGRANGIAN_TIMES = 24
-# rows of the case's cells in a layer of the dispersion: cells twice as large still nest in it
+# rows of the case's cells in a layer of the dispersion, so that cells twice as large fit in a layer
 LAYER_ROWS = 2
 
 
 @dataclass(frozen=True)
-class Trial:
-    """A chain and what it did.
+class Predictions:
+    """A chain and its predictions for the held-out data.
 
     Parameters
     ----------
@@ -46,7 +46,7 @@ class Trial:
     lagrangian : list of (model, dem) Statistics
         Of each run, from the start of the window.
     cost_s : dict of str to float
-        learn_s, and those of `selection.running_cost` [s].
+        learn_s, and those of `scan.running_cost` [s].
     """
 
     chain: Chain
@@ -58,13 +58,15 @@ class Trial:
     cost_s: dict[str, float]
 
 
-def try_out(candidate: Candidate, learning: slice, held: HeldOut, task: Task, seed: int) -> Trial:
-    """Learn a candidate on the whole learning window and let it run from every start held out.
+def predict_held_out(
+    candidate: Candidate, learning: slice, held: HeldOut, task: Task, seed: int
+) -> Predictions:
+    """Learn a candidate on the whole learning window and run it from every held-out start.
 
     Parameters
     ----------
     candidate : Candidate
-        Its settings chosen.
+        With its chosen settings.
     learning : slice
         Frames of the learning window of the first run.
     held : HeldOut
@@ -74,7 +76,7 @@ def try_out(candidate: Candidate, learning: slice, held: HeldOut, task: Task, se
 
     Returns
     -------
-    Trial
+    Predictions
 
     Raises
     ------
@@ -93,12 +95,14 @@ def try_out(candidate: Candidate, learning: slice, held: HeldOut, task: Task, se
         inside = held.moments[held.moments <= start.length]
         shares = batch_shares(chain, begin, batch, inside, lag)
         densities.append(regrid(shares, chain.grid, held.grid))
-        one = chain.mixing(begin, *task.splits, -(-start.length // lag), rng)
-        drawn.append(at_frames(one, lag, start.length))
+        monte_carlo = chain.mixing(begin, *task.splits, -(-start.length // lag), rng)
+        drawn.append(at_frames(monte_carlo, lag, start.length))
     lagrangian = [lagrangian_of(chain, held, number, lag, rng) for number in range(len(held.runs))]
     first = run.leading_to(grid, held.starts[0].frame, lag)
     cost = {"learn_s": learn_s} | running_cost(chain, first, task)
-    return Trial(chain, lag, stacked(curves), _padded(densities, held), stacked(drawn), lagrangian, cost)
+    return Predictions(
+        chain, lag, stacked(curves), _padded(densities, held), stacked(drawn), lagrangian, cost
+    )
 
 
 def batch_shares(
@@ -109,13 +113,13 @@ def batch_shares(
     lag: int,
     rng: np.random.Generator | None = None,
 ) -> Array:
-    """Where a batch is at moments between a chain's steps, on the chain's cells, by straight lines.
+    """Shares of a batch in a chain's cells at given frames, interpolated linearly between its steps.
 
     Parameters
     ----------
     chain : Chain
     begin : Frames
-        Up to the start.
+        Frames up to the start.
     batch : (n_particles,) bool array
     moments : (n_moments,) int array
         Rising frames after the start [1].
@@ -133,10 +137,10 @@ def batch_shares(
         return np.zeros((0, chain.grid.n_cells))
     before, after = moments // lag, -(-moments // lag)
     steps = np.unique(np.concatenate((before, after)))
-    found = chain.densities(begin, batch[None], [int(step) for step in steps], rng)[:, 0] / batch.sum()
+    shares = chain.densities(begin, batch[None], [int(step) for step in steps], rng)[:, 0] / batch.sum()
     part = (moments / lag - before)[:, None]
-    one, two = (found[np.searchsorted(steps, end)] for end in (before, after))
-    return np.asarray((1 - part) * one + part * two)
+    first, last = (shares[np.searchsorted(steps, end)] for end in (before, after))
+    return np.asarray((1 - part) * first + part * last)
 
 
 def lagrangian_of(
@@ -157,7 +161,7 @@ def lagrangian_of(
     Returns
     -------
     model, dem : Statistics
-        At the same times, multiples of the lag; the model's less what its cells add.
+        At the same times, multiples of the lag; the model's corrected for the size of its cells.
     """
     dem, values, steps, span, edges = _dem_statistics(held, number, lag)
     interval_s = lag * held.interval_s
@@ -197,6 +201,6 @@ def _first_start(held: HeldOut, number: int) -> Start:
 
 def _padded(densities: list[Array], held: HeldOut) -> Array:
     table = np.full(held.densities.shape, np.nan)
-    for row, found in zip(table, densities, strict=True):
-        row[: len(found)] = found
+    for row, shares in zip(table, densities, strict=True):
+        row[: len(shares)] = shares
     return table

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Which frames are fitted, which validate, and where in a window particles are marked anew."""
+"""Starts, the frames at which particles are marked, and the split of the learning window."""
 
 from dataclasses import dataclass
 
@@ -7,13 +7,13 @@ from bedchain.errors import UserError
 
 # of the learning window; the paper's 10-15 s is fitted on 10-13.5 s and validated on 13.5-15 s
 FIT_SHARE = 0.7
-# more starts than this cost time and say little more: a window holds only so many bubbles
+# a window holds few bubbles: more starts cost time and add little
 MOST_STARTS = 5
 
 
 @dataclass(frozen=True)
 class Start:
-    """Where particles are marked, and how far they are followed.
+    """A frame at which particles are marked, and the frame up to which they are followed.
 
     Parameters
     ----------
@@ -37,7 +37,7 @@ class Start:
 
 
 def split(learning: slice) -> tuple[slice, slice]:
-    """Cut the learning window into a part to fit and a later part to validate.
+    """The learning window, cut into a part to fit and a later part to validate.
 
     Parameters
     ----------
@@ -52,7 +52,7 @@ def split(learning: slice) -> tuple[slice, slice]:
     Raises
     ------
     UserError
-        Fewer than two frame intervals are left for a part.
+        A part has fewer than two frame intervals.
     """
     intervals = learning.stop - learning.start - 1
     cut = learning.start + round(FIT_SHARE * intervals)
@@ -72,7 +72,7 @@ def starts_in(part: slice, spacing: int, run: int = 0) -> list[Start]:
     part : slice
         Frames of the window.
     spacing : int
-        Least number of frames between starts: those of `memory`.
+        Least number of frames between starts, as `bands.memory` gives it.
     run : int
         Number of the run.
 
