@@ -5,9 +5,9 @@ import json
 from pathlib import Path
 
 from bedchain.studies.cost import machine_speed
-from bedchain.studies.cost.machine_speed import Bed
+from bedchain.studies.cost.machine_speed import BedSize
 
-PAPER = Bed(81000, 2, 54 * 210, 3.125e-5, 5e-4)
+PAPER = BedSize(81000, 2, 54 * 210, 3.125e-5, 5e-4)
 
 
 def write_run(folder: Path, seconds, bed=PAPER, spans=((0, 0.5), (0.5, 1.0)), cells=(54, 1, 210)):

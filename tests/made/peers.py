@@ -5,7 +5,7 @@ import numpy as np
 
 from bedchain.case.parameters import Parameter
 from bedchain.errors import UserError
-from bedchain.studies.peers.bed import Bed
+from bedchain.studies.peers.bed import PeerBed
 from bedchain.studies.peers.peer import Outcome, Peer
 
 NUMBERS = {
@@ -28,9 +28,9 @@ Loop time of 6.45472 on 1 procs for 2500 steps with 9000 atoms
 """
 
 
-def box() -> Bed:
+def box() -> PeerBed:
     """Three particles in a box of 4 x 12 cells."""
-    return Bed("box", [Parameter(name, value, "-", "test") for name, value in NUMBERS.items()], PARTICLES)
+    return PeerBed("box", [Parameter(name, value, "-", "test") for name, value in NUMBERS.items()], PARTICLES)
 
 
 def timed_peer(name, costs, folder, calls, gas=False, fails=False, particles=3):

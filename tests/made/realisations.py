@@ -3,7 +3,7 @@
 
 import numpy as np
 
-from bedchain.studies.tradeoff.chain_settings import Own
+from bedchain.studies.tradeoff.chain_settings import CaseChain
 from bedchain.studies.tradeoff.observables import Reference
 from bedchain.trajectory.grid import Grid
 
@@ -23,4 +23,4 @@ def own(columns=10, rows=40, width=0.1, height=0.4, frames=80, **changes):
         "lag": 1, "estimator": "pooled", "learning": slice(60, 60 + frames + 1), "compared": frames,
         "interval_s": 0.025, "diameter_m": 1e-3, "splits": (width / 2, round(0.2 * height, 6)),
     }  # fmt: skip
-    return Own(Grid(width, height, columns, rows), **values | changes)
+    return CaseChain(Grid(width, height, columns, rows), **values | changes)

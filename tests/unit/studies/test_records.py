@@ -4,7 +4,7 @@
 import pytest
 
 from bedchain.errors import UserError
-from bedchain.studies.records import only, record_of, remembered, stamp
+from bedchain.studies.records import record_of, remembered, remove_other_results, stamp
 
 
 def test_a_stamp_changes_with_data_and_settings_and_old_results_go(tmp_path):
@@ -14,8 +14,8 @@ def test_a_stamp_changes_with_data_and_settings_and_old_results_go(tmp_path):
     assert stamp([file], {"lag": 1}) == first and stamp([file], {"lag": 2}) != first
     file.write_bytes(b"2")
     assert stamp([file], {"lag": 1}) != first
-    (only(tmp_path / "kept" / first) / "result").write_text("x")
-    only(tmp_path / "kept" / "new")
+    (remove_other_results(tmp_path / "kept" / first) / "result").write_text("x")
+    remove_other_results(tmp_path / "kept" / "new")
     assert [folder.name for folder in (tmp_path / "kept").iterdir()] == ["new"]
 
 

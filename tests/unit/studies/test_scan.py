@@ -7,9 +7,9 @@ import numpy as np
 import pytest
 
 from bedchain.measures.mixing import Splits
+from bedchain.studies.candidates import Candidate
+from bedchain.studies.marked_starts import Start
 from bedchain.studies.scan import at_frames, named, observed_curves, scan, timed
-from bedchain.studies.scores.candidates import Candidate
-from bedchain.studies.scores.marked_starts import Start
 from bedchain.trajectory.grid import Grid
 from made.frames import walkers
 

@@ -7,7 +7,14 @@ import pytest
 
 from bedchain.errors import UserError
 from bedchain.measures.slices import boxes_around, profile
-from bedchain.studies.validation import Bed, compare, difference_metrics, profile_with_band, read_points, rms
+from bedchain.studies.validation import (
+    BedFrames,
+    compare,
+    difference_metrics,
+    profile_with_band,
+    read_points,
+    rms,
+)
 
 RADIUS = 6e-4
 
@@ -38,7 +45,7 @@ def test_a_bed_compared_with_itself_differs_by_nothing_and_with_a_shift_by_the_s
     frames = np.stack(
         [np.stack([*beads(2000, seed)[:2], np.zeros(2000), rng.normal(0.1, 0.3, 2000)]) for seed in range(6)]
     )
-    bed = Bed(frames, 0.025, RADIUS, 0.044, 0.01)
+    bed = BedFrames(frames, 0.025, RADIUS, 0.044, 0.01)
     x = np.array([0.005, 0.02, 0.035])
     points = pd.concat(
         pd.DataFrame({"quantity": name, "height_m": height, "position_x_m": x, "value": 0.0})

@@ -10,10 +10,10 @@ from bedchain.studies.cost import machine_speed
 from bedchain.studies.cost.actual import (
     FACTOR_AIM,
     TOTAL,
-    compared,
-    errors_happened,
-    happened,
-    outside,
+    actual_cost,
+    actual_error,
+    beside_actual,
+    far_from_estimate,
     settling_loop,
 )
 from bedchain.studies.cost.estimate import predicted
@@ -38,14 +38,14 @@ def folders(results):
 
 
 def test_what_happened_is_set_against_the_part_that_was_done(short, results):
-    table = compared(predicted(short, LIKE), happened(short, results, results, folders(results)))
+    table = beside_actual(predicted(short, LIKE), actual_cost(short, results, results, folders(results)))
     for name in machine_speed.SOLVERS:
         assert table.loc[name, "done_1"] == pytest.approx(0.4)
         assert table.loc[name, "ratio_1"] == pytest.approx(1.2)
     assert table.loc[TOTAL, "ratio_1"] == pytest.approx(1.2)
     assert table.loc[TOTAL, "wall_s"] == pytest.approx(table["wall_s"].drop(TOTAL).sum())
     assert table.loc[["settling", "repeats", "parse_dumps"], "ratio_1"].isna().all()
-    assert outside(table) == []
+    assert far_from_estimate(table) == []
 
 
 def test_jobs_settling_repeats_and_errors_that_happened(short, results):
@@ -58,7 +58,7 @@ def test_jobs_settling_repeats_and_errors_that_happened(short, results):
     (results / "dem/stamp/settled/liggghts.log").write_text(log)
     (results / "trajectory.npy").write_bytes(b"x" * 1000)
     write_run(results / "repeats/1", {"dem": 20.0, "exchange": 1, "gas": 4}, spans=((3.5, 5.5),))
-    found = happened(short, results, results, folders(results))
+    found = actual_cost(short, results, results, folders(results))
     assert found.loc["settling", "happened_wall_s"] == 12.5
     assert found.loc["dem", "happened_memory_mb"] == 111
     assert found.loc["parse_dumps", "happened_disk_mb"] == pytest.approx(1e-3)
@@ -68,14 +68,14 @@ def test_jobs_settling_repeats_and_errors_that_happened(short, results):
 
 
 def test_nothing_has_happened_yet(short, tmp_path):
-    table = compared(predicted(short, LIKE), happened(short, tmp_path, tmp_path, folders(tmp_path)))
+    table = beside_actual(predicted(short, LIKE), actual_cost(short, tmp_path, tmp_path, folders(tmp_path)))
     assert table["ratio_1"].isna().all() and table.loc[TOTAL, "wall_s"] > 0
 
 
 def test_stages_outside_the_factor_are_named():
     ratios = [1 / 1.6, 1 / 1.4, 1.4, 1.6, math.nan]
     table = pd.DataFrame({"ratio_1": ratios}, index=["fast", "a", "b", "slow", "unknown"])
-    assert FACTOR_AIM == 1.5 and outside(table) == ["fast", "slow"]
+    assert FACTOR_AIM == 1.5 and far_from_estimate(table) == ["fast", "slow"]
 
 
 def test_the_time_of_settling_is_in_liggghts_s_log(tmp_path):
@@ -91,8 +91,8 @@ def test_errors_in_noise_floors_by_hand(tmp_path, short):
     rows += [("error_rms_left", "static", 0.3), ("error_rms_right", "static", 0.1)]
     rows += [("error_rms_low", "static", 0.1), ("error_rms_up", "static", 0.1)]
     pd.DataFrame(rows, columns=["quantity", "source", "value"]).to_csv(file, index=False)
-    assert errors_happened(file, "static") == pytest.approx(math.sqrt((9 + 1 + 1 + 1) / 4))
-    assert math.isnan(errors_happened(file, "dynamic"))
-    assert math.isnan(errors_happened(tmp_path / "none.csv", "static"))
-    found = happened(short, tmp_path, tmp_path, folders(tmp_path))
+    assert actual_error(file, "static") == pytest.approx(math.sqrt((9 + 1 + 1 + 1) / 4))
+    assert math.isnan(actual_error(file, "dynamic"))
+    assert math.isnan(actual_error(tmp_path / "none.csv", "static"))
+    found = actual_cost(short, tmp_path, tmp_path, folders(tmp_path))
     assert found.loc["run_chain_static", "happened_error_floors"] == pytest.approx(math.sqrt(3))

@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 
 from bedchain.studies.cost import machine_speed
-from bedchain.studies.cost.machine_speed import Bed
+from bedchain.studies.cost.machine_speed import BedSize
 from made.cost_runs import PAPER, write_run
 
 
@@ -18,7 +18,7 @@ def test_solver_by_hand_and_near_what_was_measured():
     assert found["gas"] == pytest.approx(2000 * (1.7e-3 + 2.3e-6 * 11340 / 2))
     # 301 s a simulated second on two ranks, 577 s on one (results/peers)
     assert sum(found.values()) == pytest.approx(301, rel=0.05)
-    alone = Bed(81000, 1, 11340, 3.125e-5, 5e-4)
+    alone = BedSize(81000, 1, 11340, 3.125e-5, 5e-4)
     assert sum(machine_speed.solver_seconds(alone, 1.0, cores=2).values()) == pytest.approx(577, rel=0.05)
 
 
@@ -32,19 +32,19 @@ def test_ranks_without_cores_of_their_own_take_turns():
 
 def test_rates_lie_between_those_measured_and_stay_beyond():
     table = ((10, 100.0), (1000, 300.0))
-    beds = [Bed(number, 2, 0, 1e-5, 1e-4) for number in (2, 20, 200, 2000, 20000)]
+    beds = [BedSize(number, 2, 0, 1e-5, 1e-4) for number in (2, 20, 200, 2000, 20000)]
     assert [machine_speed.per_rank(table, bed) for bed in beds] == pytest.approx([100, 100, 200, 300, 300])
 
 
 def test_without_gas_only_particles_cost():
-    found = machine_speed.solver_seconds(Bed(1000, 1, 0, 1e-5, 5e-4), 2.0)
+    found = machine_speed.solver_seconds(BedSize(1000, 1, 0, 1e-5, 5e-4), 2.0)
     assert found["dem"] > 0 and found["exchange"] == found["gas"] == 0
 
 
 def test_the_speed_is_that_of_the_run_nearest_in_size(tmp_path):
     usual = machine_speed.solver_seconds(PAPER, 1.0)
     near = write_run(tmp_path / "near", {name: 2 * usual[name] for name in machine_speed.SOLVERS})
-    small = Bed(900, 2, 100, 2e-5, 5e-4)
+    small = BedSize(900, 2, 100, 2e-5, 5e-4)
     far = write_run(tmp_path / "far", machine_speed.solver_seconds(small, 1.0), small, cells=(10, 1, 10))
     speed = machine_speed.calibrate([far, near, tmp_path / "none.json"], PAPER)
     assert (speed.dem, speed.exchange, speed.gas) == pytest.approx((0.5, 0.5, 0.5))

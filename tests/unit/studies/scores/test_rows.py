@@ -7,7 +7,7 @@ import pytest
 from bedchain.measures.mixing import Splits
 from bedchain.studies.scores import rows
 from bedchain.studies.scores.held_out import hold_out
-from bedchain.studies.scores.tested_chain import dem_statistics
+from bedchain.studies.scores.predictions import dem_statistics
 from bedchain.trajectory.grid import Grid
 from made.frames import walkers
 

@@ -5,8 +5,8 @@ import numpy as np
 import pytest
 
 from bedchain.measures.mixing import Splits
+from bedchain.studies.candidates import Candidate
 from bedchain.studies.scan import Task
-from bedchain.studies.scores.candidates import Candidate
 from bedchain.studies.scores.selection import validated
 from bedchain.trajectory.grid import Grid
 from bedchain.trajectory.realisations import Realisation

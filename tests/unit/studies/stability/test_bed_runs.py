@@ -8,7 +8,7 @@ import pandas as pd
 import pytest
 
 from bedchain.studies.stability.bed_runs import Expected, checks, momentum, observe
-from bedchain.studies.stability.beds import Bed, case_of
+from bedchain.studies.stability.beds import StabilityBed, case_of
 from bedchain.studies.stability.verdict import (
     INACCURATE,
     STABLE,
@@ -52,7 +52,7 @@ def made_series(**columns):
     ],
 )
 def test_whatever_is_wrong_with_a_bed_is_seen(columns, said):
-    case = case_of(Bed())
+    case = case_of(StabilityBed())
     good = observe(case, made_series())
     expected = Expected(overlap=0.01, reference="x")
     assert judge(checks(good, expected, good)).outcome == STABLE

@@ -6,7 +6,7 @@ import pytest
 
 from bedchain.chains import registry
 from bedchain.studies.stability.chain_runs import run_chain
-from bedchain.studies.stability.chain_settings import case, chain_settings
+from bedchain.studies.stability.chain_settings import WalkerWindow, chain_settings
 from bedchain.studies.stability.settings import ON
 from bedchain.studies.stability.verdict import INACCURATE, REFUSED, STABLE
 from bedchain.studies.stability.walkers import HEIGHT, WIDTH

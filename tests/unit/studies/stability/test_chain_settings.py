@@ -4,12 +4,12 @@
 import numpy as np
 
 from bedchain.chains import registry
-from bedchain.studies.stability.chain_settings import case, learn_shut
+from bedchain.studies.stability.chain_settings import WalkerWindow, learn_shut
 from bedchain.studies.stability.walkers import lifted_last
 
 
 def test_the_guard_off_differs_in_the_trap_only():
-    one = case(top=0.5, change=lifted_last)
+    one = WalkerWindow(top=0.5, change=lifted_last).case()
     open_chain = registry.learn("static", one.frames, one.grid)
     shut = learn_shut("static", one.frames, one.grid)
     differing = np.flatnonzero(np.abs(open_chain.matrix - shut.matrix).sum(axis=1) > 1e-12)

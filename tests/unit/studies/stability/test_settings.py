@@ -4,13 +4,13 @@
 import pytest
 
 from bedchain.errors import UserError
-from bedchain.studies.stability.settings import Setting, chosen
+from bedchain.studies.stability.settings import StabilitySetting, chosen
 from bedchain.studies.stability.theory import Limit
 
 
 def setting(name, run, group="made up", inputs="1", **more):
     """A setting that does what it is told."""
-    return Setting(group, name, {"x_1": 1.0}, Limit("x [1]", 2.0, "x < 2", 1.0), run, inputs, **more)
+    return StabilitySetting(group, name, {"x_1": 1.0}, Limit("x [1]", 2.0, "x < 2", 1.0), run, inputs, **more)
 
 
 def test_settings_are_chosen_with_what_they_are_compared_with():

@@ -12,7 +12,7 @@ import pytest
 
 from bedchain.dem import processes
 from bedchain.errors import UserError
-from bedchain.studies.stability.settings import Setting
+from bedchain.studies.stability.settings import StabilitySetting
 from bedchain.studies.stability.study import limited, run_study
 from bedchain.studies.stability.theory import Limit
 from bedchain.studies.stability.verdict import (

@@ -8,7 +8,13 @@ import pytest
 from scipy import stats
 
 from bedchain.measures.batch import total_variation
-from bedchain.studies.tradeoff.observables import Reference, Seen, curve_errors, density_errors, scalar_errors
+from bedchain.studies.tradeoff.observables import (
+    BedObservables,
+    Reference,
+    curve_errors,
+    density_errors,
+    scalar_errors,
+)
 from bedchain.uncertainty.noise_floor import noise_floor
 from made.realisations import realisations
 

@@ -9,7 +9,7 @@ import yaml
 from bedchain.case.presets import count_near
 from bedchain.errors import UserError
 from bedchain.studies.pareto import pareto_front
-from bedchain.studies.tradeoff.chain_settings import FACTORIAL, ORDER, settings
+from bedchain.studies.tradeoff.chain_settings import FACTORIAL, ORDER, chain_settings
 from bedchain.studies.tradeoff.presets import choose, knee, nominal_cell, write_presets
 from made.realisations import own
 
@@ -26,7 +26,7 @@ def test_cells_divide_levels_and_keep_the_lines():
 
 def test_nominal_cells_give_the_columns_and_rows_that_they_stand_for():
     for case in (own(), own(27, 105, 0.27, 1.05, splits=(0.135, 0.25))):
-        tried = [one for one in settings(case) if one.axis in (FACTORIAL, ORDER)]
+        tried = [one for one in chain_settings(case) if one.axis in (FACTORIAL, ORDER)]
         assert len(tried) > 20
         for one in tried:
             assert case.near(nominal_cell(one.columns, one.rows, case)) == (one.columns, one.rows)

@@ -11,7 +11,7 @@ from bedchain.case.load import load_case
 from bedchain.case.variants import Variant
 from bedchain.studies.tradeoff import simulated_beds
 from bedchain.studies.tradeoff.bed_variants import BedVariant, bed_variants
-from bedchain.studies.tradeoff.observables import Seen
+from bedchain.studies.tradeoff.observables import BedObservables
 from bedchain.studies.tradeoff.simulated_beds import simulate_all, solver_memory
 from made.realisations import realisations
 

@@ -7,7 +7,7 @@ import pytest
 from bedchain.chains import registry
 from bedchain.measures.mixing import Splits
 from bedchain.studies.scores.held_out import hold_out
-from bedchain.studies.scores.tested_chain import batch_shares, dem_statistics, lagrangian_of
+from bedchain.studies.scores.predictions import batch_shares, dem_statistics, lagrangian_of
 from bedchain.trajectory.grid import Grid
 from made.frames import framed, walkers
 

@@ -4,7 +4,8 @@
 import pytest
 
 from bedchain.chains.registry import LEARNERS, learn
-from bedchain.studies.scores.candidates import SETTINGS, Candidate, candidates, grid_of, scaled
+from bedchain.studies.candidates import Candidate, grid_of
+from bedchain.studies.scores.search_spaces import SEARCH_SPACES, candidates, scaled
 from bedchain.trajectory.grid import Grid
 from made.frames import stirred
 
@@ -30,7 +31,7 @@ def test_every_option_tried_is_one_of_its_model():
 def test_baselines_compete_as_models_of_their_own():
     names = {one.name for one in candidates(LEARNERS, GRID, 1, 1e-3) if one.model == "recurrence"}
     assert names == {"recurrence", "recurrence_shuffled", "recurrence_replay"}
-    assert set(SETTINGS) <= set(LEARNERS)
+    assert set(SEARCH_SPACES) <= set(LEARNERS)
 
 
 def test_cells_finer_than_a_particle_are_left_out():

@@ -5,7 +5,7 @@ import numpy as np
 import pytest
 
 from bedchain.errors import UserError
-from bedchain.studies.scores.marked_starts import split, starts_in
+from bedchain.studies.marked_starts import split, starts_in
 from made.frames import INTERVAL_S
 
 
