@@ -100,7 +100,7 @@ def test_each_model_has_one_setting_and_the_papers_chain_is_always_tested(walker
 
 def test_scrambling_the_test_window_leaves_the_choice_alone(walkers, tmp_path):
     values = np.load(walkers.trajectories[0])
-    after = round(LEARNING["end_s"] / 0.025) + 1
+    after = round(LEARNING.end_s / 0.025) + 1
     rng = np.random.default_rng(9)
     values[after:] = rng.permuted(values[after:], axis=2)
     again = scored(tmp_path / "a", write(tmp_path / "scrambled", values, SIZE))
