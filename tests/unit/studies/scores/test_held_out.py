@@ -20,7 +20,9 @@ def held(*seeds):
 
 def test_starts_of_all_runs_with_their_curves_and_batches():
     found = held(1, 2)
-    assert found.run_of_start.tolist() == [0, 0, 0, 1, 1, 1] and found.number_in_window.tolist() == [0, 1, 2] * 2
+    assert (
+        found.run_of_start.tolist() == [0, 0, 0, 1, 1, 1] and found.number_in_window.tolist() == [0, 1, 2] * 2
+    )
     assert [start.frame for start in found.starts[:3]] == [40, 50, 60]
     values = found.runs[1].values
     low = np.floor(values[50, 1] / 0.01) < 2

@@ -31,7 +31,7 @@ def test_a_setting_that_hangs_is_ended_with_all_that_it_started(tmp_path):
         noted.write_text(str(child.pid))
         child.wait()
 
-    assert limited(hang, 2.0).outcome == HUNG
+    assert limited(hang, 1.0).outcome == HUNG
     for _ in range(100):
         if not Path(f"/proc/{noted.read_text()}").exists():
             break
