@@ -1,7 +1,9 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """What must be true of the chains and their comparison with the DEM, and what is expected of this case."""
 
+import hashlib
 import json
+import re
 
 import numpy as np
 import pandas as pd
@@ -10,6 +12,7 @@ import pytest
 from bedchain.chains import registry
 from bedchain.chains.markov_chain import MarkovChain
 from bedchain.comparison.expected import deviations, read_expected
+from bedchain.provenance import case_hash
 
 # row sums and masses: round-off of some hundred additions
 ROUND_OFF = 1e-10
@@ -78,8 +81,9 @@ def test_metrics_are_complete_and_finite(results, metrics, case):
             for quantity in ("error_signed", "error_rms", "crossed_end"):
                 assert (source, f"{quantity}_{group}") in metrics.index
     banded = metrics.dropna(subset=["ci_low", "ci_high"])
-    assert len(banded) > 0
     assert (banded["ci_low"] <= banded["ci_high"]).all()
+    for model in case["chain"]["models"]:
+        assert {(model, f"error_rms_{group}") for group in GROUPS} <= set(banded.index)
 
 
 def test_repeats_give_a_noise_floor_beside_every_error(metrics, case):
@@ -113,9 +117,23 @@ def test_timing_has_the_dem_and_every_chain(results, case):
     assert (timing["wall_s"] > 0).all()
 
 
-def test_provenance_names_what_made_the_results(results):
+def test_provenance_names_what_made_the_results(results, case):
     provenance = json.loads((results / "provenance.json").read_text())
-    assert provenance
+    files = {"dem": "dem.json", "metrics": "metrics.csv", "timing": "timing.csv"}
+    hashes = {key: hashlib.sha256((results / name).read_bytes()).hexdigest() for key, name in files.items()}
+    assert provenance["sha256"] == hashes
+    values = provenance["case"]["values"]
+    assert provenance["case"]["sha256"] == case_hash(values)
+    assert values.items() <= case.items() and {"particles", "cells", "chain"} <= values.keys()
+    assert provenance["seeds"] == {"particles": case["seed"], "chain": case["chain"]["seed"]}
+    assert re.fullmatch("[0-9a-f]{40}", provenance["git"]["commit"])
+    assert provenance["packages"]["python"]["numpy"] == np.__version__
+    assert provenance["packages"]["debian"]["liggghts"] and provenance["machine"]["cores"] > 0
+    jobs = {
+        f"{job}_{model}" for job in ("build_transitions", "run_chain") for model in case["chain"]["models"]
+    }
+    assert jobs <= provenance["times"].keys()
+    assert all(job["wall_s"] > 0 for job in provenance["times"].values())
 
 
 def test_case_gives_what_is_expected_of_it(case_folder, results):

@@ -37,7 +37,9 @@ def table(results):
 def models(case, results):
     """Names of the chains that have a transition matrix."""
     of = {name: load(results / f"transitions_{name}.npz") for name in case["chain"]["models"]}
-    return [name for name, chain in of.items() if isinstance(chain, MarkovChain)]
+    names = [name for name, chain in of.items() if isinstance(chain, MarkovChain)]
+    assert {"static", "dynamic"} & set(names)
+    return names
 
 
 def part_of(table, quantity, source=None):
@@ -83,10 +85,12 @@ def test_mixing_time_belongs_to_the_slowest_process(table, models, case):
 
 def test_one_step_of_a_pooled_static_chain_is_what_was_counted(table, case):
     if case["chain"]["estimator"] != "pooled":
-        return
+        pytest.skip("other estimators do not give back what was counted")
     seen = part_of(table, "remaining_counted").set_index(["part", "time_s"])["value"]
     steps = part_of(table, "remaining_propagated", "static")
-    for row in steps[np.isclose(steps["lag_s"], steps["time_s"])].itertuples():
+    steps = steps[np.isclose(steps["lag_s"], steps["time_s"])]
+    assert set(steps["part"]) == set(GROUPS)
+    for row in steps.itertuples():
         cut = row.part in ("left", "right") and middle_is_cut(case)
         assert row.value == pytest.approx(seen[row.part, row.time_s], abs=CUT_CELLS if cut else DIGITS)
 
@@ -112,7 +116,7 @@ def test_residence_times_are_a_step_or_more_and_in_order(table, models, case):
         times = part_of(table, "residence_time", model).set_index("part")["value"]
         assert case["chain"]["lag_s"] * (1 - DIGITS) <= times["shortest"] <= times["mean"] <= times["longest"]
         passage = part_of(table, "first_passage_time", model)["value"]
-        assert (passage > times["shortest"]).all()
+        assert len(passage) <= 1 and (passage > times["shortest"]).all()
 
 
 def end_frames(table, model, case, results):
@@ -139,8 +143,7 @@ def test_only_the_literal_estimator_leaks_and_the_pooled_one_keeps_the_density(t
         assert set(leak.index) == set(ESTIMATORS)
         assert leak["literal"] > 0 and leak["per_step"] == leak["pooled"] == 0
         assert error["literal"] > 0 and max(error["per_step"], error["pooled"]) < ROUND_OFF
-        assert distance.between(0, 1).all()
-        assert distance["pooled"] == distance.min()
+        assert distance["pooled"] == distance.min() >= 0 and distance.max() <= 1
         assert distance["pooled"] < end_frames(table, model, case, results)
 
 

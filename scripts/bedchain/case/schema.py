@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """The schema of a case, and the lookup of its keys and of a case's values."""
 
+from functools import cache
 from pathlib import Path
 from typing import Any
 
@@ -13,8 +14,9 @@ Case = dict[str, Any]
 Schema = dict[str, Any]
 
 
+@cache
 def load_schema(file: Path = SCHEMA_FILE) -> Schema:
-    """The schema of case files (JSON Schema 2020-12)."""
+    """The schema of case files (JSON Schema 2020-12), read once; not to be changed."""
     schema, _ = read_yaml(file)
     Draft202012Validator.check_schema(schema)
     return dict(schema)

@@ -7,6 +7,7 @@ from pathlib import Path
 from typing import Any
 
 import yaml
+from yaml.reader import ReaderError
 
 from bedchain.errors import CaseError, Problem, UserError
 
@@ -41,26 +42,37 @@ def read_yaml(file: Path) -> tuple[Any, Lines]:
     UserError
         The file is missing or not text.
     CaseError
-        The file is not YAML, or has a key twice, an alias of a group, or a number that is not finite.
+        Where it is no YAML, or holds a key twice, an alias of a group, a number that is not finite, or a
+        text that its kind of value cannot be.
     """
     try:
         text = file.read_text(encoding="utf-8")
     except (OSError, UnicodeDecodeError) as error:
         raise UserError(f"{file} cannot be read ({error}); check the name, it must be a text file") from None
-    loader = StrictLoader(text)
+    loader = None
     try:
+        loader = StrictLoader(text)
         root = loader.get_single_node()
         reader = _Reader(loader)
         data = reader.value(root, "") if root is not None else None
-    except yaml.YAMLError as error:
-        mark = getattr(error, "problem_mark", None)
-        wrong = getattr(error, "problem", None) or str(error)
-        line = mark.line + 1 if mark else None
-        problem = Problem("(file)", f"no YAML: {wrong}", "check indentation, colons and quotes", line)
-        raise CaseError(file, [problem]) from None
+    except (yaml.YAMLError, OverflowError, RecursionError) as error:
+        raise CaseError(file, [_no_yaml(error, text, loader)]) from None
     if reader.problems:
         raise CaseError(file, reader.problems)
     return data, reader.lines
+
+
+def _no_yaml(error: Exception, text: str, loader: StrictLoader | None) -> Problem:
+    """Problem of a file that cannot be taken apart, with its line."""
+    mark = getattr(error, "problem_mark", None)
+    wrong = getattr(error, "problem", None) or str(error)
+    line = mark.line + 1 if mark else loader.line + 1 if loader else None
+    if isinstance(error, ReaderError):
+        wrong = f"the character {chr(error.character)!a} is not allowed"
+        line = text.count("\n", 0, error.position) + 1
+    elif isinstance(error, RecursionError):
+        wrong = "its groups are nested too deeply"
+    return Problem("(file)", f"no YAML: {wrong}", "check indentation, colons and quotes", line)
 
 
 class _Reader:
@@ -97,7 +109,15 @@ class _Reader:
         return data
 
     def _scalar(self, node: yaml.ScalarNode, path: str) -> Any:
-        value = self.loader.construct_object(node)
+        try:
+            value = self.loader.construct_object(node)
+        except (ValueError, LookupError, AttributeError):
+            # such as the 30th of February, or a tag that does not go with the text
+            kind = node.tag.rpartition(":")[2]
+            self._note(
+                node, path, f"{node.value} cannot be read as {kind}", "put it into quotes, or correct it"
+            )
+            return None
         if isinstance(value, float) and not math.isfinite(value):
             self._note(node, path, f"{node.value} is not a finite number", "give a finite number")
         return value

@@ -93,18 +93,20 @@ def time_rows(chain: MarkovChain, start: NDArray[np.float64], least_share: float
     Returns
     -------
     list of dict
-        mixing_time; residence_time (part: mean over the particles, shortest and longest of the cells);
-        first_passage_time, left out if some particles never reach the top.
+        mixing_time; residence_time (part: mean over the particles, shortest and longest of the cells), left
+        out if no cell is ever left; first_passage_time, left out if some particles never reach the top.
     """
     residence, density = residence_in_cells(chain, start)
-    usual = (density >= least_share) & np.isfinite(residence)
-    mean = float((residence[usual] * density[usual]).sum() / density[usual].sum())
-    times = {"mean": mean, "shortest": residence[usual].min(), "longest": residence[usual].max()}
     where = {"lag_s": chain.lag_s}
     rows = [metric("mixing_time", chain.name, mixing_time(chain.matrix, chain.lag_s), "s", **where)]
-    rows += [
-        metric("residence_time", chain.name, value, "s", part=part, **where) for part, value in times.items()
-    ]
+    usual = (density >= least_share) & np.isfinite(residence)
+    if usual.any():
+        mean = float((residence[usual] * density[usual]).sum() / density[usual].sum())
+        times = {"mean": mean, "shortest": residence[usual].min(), "longest": residence[usual].max()}
+        rows += [
+            metric("residence_time", chain.name, time, "s", part=part, **where)
+            for part, time in times.items()
+        ]
     passage = passage_time(chain, start, top)
     if np.isfinite(passage):
         height = top * chain.grid.cell_height_m

@@ -195,9 +195,12 @@ def _banded(
 ) -> list[Metric]:
     """A row for each part, with the band of the samples, (n_replicates, n_values), if there are any."""
     samples = samples[:, : len(parts)]
-    # a replicate without a closed class has no timescales
-    samples = samples[np.isfinite(samples).all(axis=1)]
-    low, high = band(samples) if len(samples) else np.full((2, len(parts)), np.nan)
+    low, high = ends = np.full((2, len(parts)), np.nan)
+    # an empty group has no band; a replicate without a closed class has no timescales
+    there = np.isfinite(samples).any(axis=0)
+    whole = np.isfinite(samples[:, there]).all(axis=1)
+    if whole.any():
+        ends[:, there] = band(samples[whole][:, there])
     return [
         metric(quantity, source, value, unit, part=part, ci_low=start, ci_high=end)
         for part, value, start, end in zip(parts, values, low, high, strict=False)

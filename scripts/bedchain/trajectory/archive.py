@@ -65,8 +65,9 @@ def read_provenance(folder: Path) -> dict[str, Any]:
     """
     try:
         provenance = json.loads((folder / PROVENANCE).read_text(encoding="utf-8"))
-        _ = [provenance[name] for name in ("solver_keys", "start_s", "end_s", "history_s", "files")]
-    except (OSError, ValueError, KeyError) as error:
+        for key in ("solver_keys", "start_s", "end_s", "history_s", "files"):
+            _ = provenance[key]
+    except (OSError, ValueError, KeyError, TypeError) as error:
         raise UserError(
             f"{folder}: no readable archive of a bed ({error!r}); fetch it again, {SIMULATE}"
         ) from error

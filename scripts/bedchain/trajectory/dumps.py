@@ -188,8 +188,9 @@ def _check_ids(ids: np.ndarray, expected: np.ndarray | None) -> None:
 
 
 def _check_bounds(position: np.ndarray, ids: np.ndarray, name: str, upper: float) -> None:
-    # in single precision, as in the store: 0.09 becomes 0.0900000036 on both sides
-    single = position.astype(np.float32)
+    # in single precision, as stored: 0.09 becomes 0.0900000036 on both sides
+    with np.errstate(over="ignore"):  # infinite is outside too
+        single = position.astype(np.float32)
     outside = (single < 0) | (single > np.float32(upper))
     if outside.any():
         worst = position[outside][np.argmax(np.abs(position[outside] - upper / 2))]

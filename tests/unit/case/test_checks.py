@@ -1,12 +1,13 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Checks of a case: all of them are registered, and each reads keys that exist."""
 
+import copy
 import subprocess
 import sys
 
 import pytest
 
-from bedchain.case.checks import CHECKS
+from bedchain.case.checks import CHECKS, physical_problems
 from bedchain.case.schema import load_schema, schema_keys
 from made import ROOT
 
@@ -35,3 +36,19 @@ def test_checks_read_keys_of_the_schema():
     known = {*schema_keys(load_schema()), "scene"}
     assert len(CHECKS) == len(NAMES)
     assert {key for keys, _ in CHECKS for key in keys} <= known
+
+
+def test_every_check_speaks_of_its_own_keys_and_none_of_broken_ones(paper):
+    assert physical_problems(paper, set(), {}) == []
+    wrong = copy.deepcopy(paper)
+    wrong["seed"], wrong["cells"]["columns"], wrong["gas"]["cell_size_m"] = 4, 1000, 0.004
+    problems = physical_problems(wrong, set(), {"seed": 2})
+    assert {"seed", "cells.columns", "gas.cell_size_m"} <= {problem.key for problem in problems}
+    assert [problem.line for problem in problems if problem.key == "seed"] == [2]
+    # what the schema has refused already is not checked again
+    left = physical_problems(wrong, {"seed", "cells.columns"}, {})
+    assert "gas.cell_size_m" in {problem.key for problem in left}
+    assert not {"seed", "cells.columns"} & {problem.key for problem in left}
+    # nor what is not there
+    del wrong["cells"]
+    assert "cells.columns" not in {problem.key for problem in physical_problems(wrong, set(), {})}

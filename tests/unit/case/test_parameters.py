@@ -2,28 +2,18 @@
 """The numbers that both solvers get, and the disk that they need."""
 
 import copy
+import math
 import re
-import shutil
-import subprocess
-import sys
-from types import SimpleNamespace
 
 import pytest
 
 from bedchain.case.load import load_case
-from bedchain.case.parameters import liggghts_text, openfoam_text, solver_parameters
+from bedchain.case.parameters import fluidization_line, liggghts_text, openfoam_text, solver_parameters
 from bedchain.case.schema import load_schema
-from bedchain.dem.disk import require_disk, run_bytes
-from bedchain.errors import UserError
 from made import ROOT
 
 
-@pytest.fixture(scope="module")
-def paper():
-    return load_case(ROOT / "cases" / "paper" / "case.yaml")
-
-
-@pytest.fixture(scope="module")
+@pytest.fixture
 def values(paper):
     return {parameter.name: parameter.value for parameter in solver_parameters(paper, load_schema())}
 
@@ -71,13 +61,6 @@ def test_rolling_resistance_is_on_where_it_has_a_coefficient(values, paper):
     assert (found["rolling_law"], found["rolling_friction"]) == ("epsd2", 0.01)
 
 
-def test_many_layers_take_more_disk():
-    case = load_case(ROOT / "cases" / "mueller" / "case.yaml")
-    thin = case | {"bed": case["bed"] | {"layers": "one"}}
-    columns = 2 * 8 * 9240 * 401  # y and vy of each particle and frame
-    assert run_bytes(case) - run_bytes(thin) > columns
-
-
 def test_lengths_of_time_that_may_grow_are_not_given_to_the_decks(values):
     assert not {"end", "end_time", "segment", "ranks"} & set(values)
 
@@ -107,49 +90,18 @@ def test_what_the_solvers_do_not_need_changes_nothing(paper, section, key, value
     assert solver_parameters(other, load_schema()) == solver_parameters(paper, load_schema())
 
 
-def test_the_command_writes_both_files_and_leaves_equal_ones_alone(tmp_path):
-    command = [
-        sys.executable,
-        "scripts/write_parameters.py",
-        "cases/short/case.yaml",
-        str(tmp_path / "short"),
-    ]
-    subprocess.run(command, cwd=ROOT, check=True)
-    files = [tmp_path / "short" / name for name in ("parameters.lig", "caseParameters")]
-    before = [file.stat().st_mtime_ns for file in files]
-    assert "variable diameter equal 0.001  # [m] particles.diameter_m\n" in files[0].read_text(
-        encoding="utf-8"
-    )
-    assert "diameter 0.001; // [m] particles.diameter_m\n" in files[1].read_text(encoding="utf-8")
-    subprocess.run(command, cwd=ROOT, check=True)
-    assert [file.stat().st_mtime_ns for file in files] == before
+def test_the_drum_s_speed_reaches_the_decks_and_a_bed_in_a_box_has_none():
+    speeds = {}
+    for name in ("drum", "short"):
+        case = load_case(ROOT / "cases" / name / "case.yaml")
+        values = {item.name: item.value for item in solver_parameters(case, load_schema())}
+        speeds[name] = values.get("drum_speed")
+    assert speeds == {"drum": pytest.approx(2 * math.pi / 5.2, rel=1e-15), "short": None}
 
 
-def test_the_command_refuses_a_bad_case_without_a_trace(tmp_path):
-    bad = tmp_path / "case.yaml"
-    text = (ROOT / "cases" / "short" / "case.yaml").read_text(encoding="utf-8")
-    bad.write_text(re.sub(r"^seed: .*", "seed: 4", text, flags=re.M), encoding="utf-8")
-    command = [sys.executable, "scripts/write_parameters.py", str(bad), str(tmp_path / "out")]
-    done = subprocess.run(command, cwd=ROOT, capture_output=True, text=True, check=False)
-    assert done.returncode == 1
-    assert "seed: 4 is not above 10000" in done.stderr and "Traceback" not in done.stderr
-    assert not (tmp_path / "out").exists()
-
-
-def test_the_paper_s_run_needs_gigabytes_and_the_short_one_megabytes(paper):
-    frames, number = 801, 81000
-    positions = frames * number * (5 * 8 + 4 * 4 + 4)
-    assert positions < run_bytes(paper) < 2 * positions
-    assert run_bytes(load_case(ROOT / "cases" / "short" / "case.yaml")) < 500e6
-
-
-def test_a_full_disk_is_refused_with_space_needed_and_free(tmp_path):
-    require_disk(tmp_path, 1)
-    with pytest.raises(UserError, match=r"needs 1.00EB on disk, \S+B are free; free some space"):
-        require_disk(tmp_path, 10**18)
-
-
-def test_little_space_needed_is_given_with_digits(tmp_path, monkeypatch):
-    monkeypatch.setattr(shutil, "disk_usage", lambda _: SimpleNamespace(free=300))
-    with pytest.raises(UserError, match=r"needs 1.20kB on disk, 300B are free"):
-        require_disk(tmp_path, 5200, done=4000)
+def test_a_case_is_told_what_its_thickness_does():
+    line = fluidization_line(load_case(ROOT / "cases" / "short" / "case.yaml"))
+    assert "0.77 m/s at T = 1 d (bed.thickness_m)" in line
+    assert "0.46 m/s at T = 0.859 d (conversion of Hoomans et al. 1996)" in line
+    many = fluidization_line(load_case(ROOT / "cases" / "mueller" / "case.yaml"))
+    assert "at T" not in many and "u_mf about" in many

@@ -1,30 +1,28 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
+"""Counts of moves and of pairs against plain loops, and their properties."""
+
 from collections import Counter, defaultdict
 
 import numpy as np
 import pytest
 from deeptime.markov import TransitionCountEstimator
+from hypothesis import given
+from hypothesis import strategies as st
+from hypothesis.extra.numpy import arrays
 
 from bedchain.chains.counting import Counts, count_moves, count_pairs
 from bedchain.errors import DataError
 from bedchain.files import map_array
 from bedchain.trajectory import chunks
+from made.frames import hopping_cells
 
 # Shares are sums of at most a few hundred fractions.
 ROUND_OFF = 1e-12
 
 
-def random_cells(seed: int, n_frames: int = 30, n_particles: int = 200, n_cells: int = 12) -> np.ndarray:
-    """Particles that hop to a neighbour, so that some cells fill and others stay almost empty."""
-    rng = np.random.default_rng(seed)
-    cells = np.empty((n_frames, n_particles), np.int32)
-    cells[0] = rng.integers(0, n_cells // 2, n_particles)
-    for frame in range(1, n_frames):
-        cells[frame] = np.clip(cells[frame - 1] + rng.integers(-1, 2, n_particles), 0, n_cells - 1)
-    return cells
-
-
-def naive(cells: np.ndarray, lag: int, moves: int) -> tuple[Counter, dict, Counter]:
+def naive(
+    cells: np.ndarray, lag: int, moves: int, weights: list[int] | None = None
+) -> tuple[Counter, dict, Counter]:
     """Counts, sums of shares and occupied steps by plain loops; keys are tuples of cells."""
     counts: Counter = Counter()
     shares: dict = defaultdict(float)
@@ -32,10 +30,11 @@ def naive(cells: np.ndarray, lag: int, moves: int) -> tuple[Counter, dict, Count
     for start in range(len(cells) - moves * lag):
         now = [tuple(int(cells[start + k * lag, p]) for k in range(moves + 1)) for p in range(cells.shape[1])]
         held = Counter(path[:-1] for path in now)
-        for path in now:
-            counts[path] += 1
-            shares[path] += 1 / held[path[:-1]]
-        occupied.update(held.keys())
+        for _ in range(1 if weights is None else weights[start]):
+            for path in now:
+                counts[path] += 1
+                shares[path] += 1 / held[path[:-1]]
+            occupied.update(held.keys())
     return counts, shares, occupied
 
 
@@ -83,12 +82,35 @@ def test_pairs_by_hand():
 def test_agrees_with_plain_loops(lag, moves):
     count = count_moves if moves == 1 else count_pairs
     for seed in range(3):
-        cells = random_cells(seed)
+        cells = hopping_cells(seed)
         assert_same(by_path(count(cells, 12, lag)), naive(cells, lag, moves))
 
 
+@st.composite
+def trajectories(draw):
+    """Cells of a few particles in a few frames, a lag that fits twice, and how often each step counts."""
+    lag, frames = draw(st.integers(1, 3)), draw(st.integers(7, 12))
+    cells = draw(arrays(np.int32, (frames, draw(st.integers(1, 5))), elements=st.integers(0, 4)))
+    weights = draw(st.lists(st.integers(0, 3), min_size=frames - lag, max_size=frames - lag))
+    weights[0] += 1
+    return cells, lag, weights
+
+
+@given(trajectories())
+def test_counts_are_those_of_loops_add_up_and_need_no_order_of_particles(given_trajectory):
+    cells, lag, weights = given_trajectory
+    for count, moves in ((count_moves, 1), (count_pairs, 2)):
+        steps = weights[: len(cells) - moves * lag]
+        counts = count(cells, 5, lag, step_weights=np.array(steps))
+        assert_same(by_path(counts), naive(cells, lag, moves, steps))
+        assert counts.moves.sum() == sum(steps) * cells.shape[1] == counts.visits.sum()
+        assert counts.shares.sum() == pytest.approx(counts.occupied.sum(), abs=ROUND_OFF)
+        turned = count(np.ascontiguousarray(cells[:, ::-1]), 5, lag, step_weights=np.array(steps))
+        assert (turned.moves != counts.moves).nnz == 0 and (turned.occupied == counts.occupied).all()
+
+
 def test_agrees_with_deeptime():
-    cells = random_cells(4)
+    cells = hopping_cells(4)
     for lag in (1, 3):
         model = TransitionCountEstimator(lag, "sliding", n_states=12).fit_fetch(
             [np.ascontiguousarray(p) for p in cells.T]
@@ -96,66 +118,18 @@ def test_agrees_with_deeptime():
         assert (model.count_matrix == count_moves(cells, 12, lag).moves.toarray()).all()
 
 
-@pytest.mark.parametrize(("count", "moves"), [(count_moves, 1), (count_pairs, 2)])
-def test_counts_of_seven_parts_of_a_window_add_up_to_those_of_the_whole(count, moves):
-    cells, lag = random_cells(5, n_frames=60), 2
-    starts = np.arange(60 - moves * lag)
-    edges = [0, 5, 6, 20, 31, 40, 52, 60]
-    parts = [
-        count(cells, 12, lag, step_weights=((low <= starts) & (starts < high)).astype(int))
-        for low, high in zip(edges, edges[1:], strict=False)
-    ]
-    whole = count(cells, 12, lag)
-    sums = tuple(sum(column, Counter()) for column in zip(*map(by_path, parts), strict=True))
-    assert_same(sums, by_path(whole))
-    assert sum(part.steps for part in parts) == whole.steps
-
-
-def test_first_and_last_choose_the_steps_of_a_part():
-    cells = random_cells(11)
-    weights = np.zeros(28, int)
-    weights[9:20] = 1
-    part = count_moves(cells, 12, 2, first=9, last=20)
-    assert_same(by_path(part), by_path(count_moves(cells, 12, 2, step_weights=weights)))
-    assert part.steps == 11
-    assert_same(by_path(count_moves(cells, 12, 2, first=9, last=99)), naive(cells[9:], 2, 1))
-
-
 def test_chunks_change_nothing(monkeypatch, tmp_path):
-    cells = random_cells(6)
+    cells = hopping_cells(6)
     np.savez(tmp_path / "cells.npz", other=np.arange(3.0), cells=cells)
-    whole = [
-        count_moves(cells, 12, 3),
-        count_pairs(cells, 12, 3),
-    ]
+    whole = [count_moves(cells, 12, 3), count_pairs(cells, 12, 3)]
     monkeypatch.setattr(chunks, "CHUNK_BYTES", 4 * cells[0].nbytes)
     mapped = map_array(tmp_path / "cells.npz", "cells")
     assert isinstance(mapped, np.memmap)
     for array in (cells, mapped, mapped[:]):
-        parts = [
-            count_moves(array, 12, 3),
-            count_pairs(array, 12, 3),
-        ]
+        parts = [count_moves(array, 12, 3), count_pairs(array, 12, 3)]
         for one, two in zip(whole, parts, strict=True):
             assert (one.moves != two.moves).nnz == 0 and (one.occupied == two.occupied).all()
             assert (one.shares != two.shares).nnz == 0
-
-
-def test_views_of_memory_maps_read_the_right_frames(tmp_path):
-    np.save(tmp_path / "cells.npy", random_cells(7))
-    mapped = np.load(tmp_path / "cells.npy", mmap_mode="r")
-    for view in (mapped, mapped[4:20], mapped[4:20][3:], mapped[:, 5:], mapped[::2], mapped[[3, 1, 2]]):
-        assert (chunks.read_frames(view, 1, 3) == np.asarray(view)[1:3]).all()
-
-
-def test_weights_count_steps_again():
-    cells = random_cells(8)
-    weights = np.random.default_rng(1).integers(0, 3, 29)
-    counts = count_moves(cells, 12, step_weights=weights)
-    steps = [count_moves(cells, 12, first=t, last=t + 1) for t in range(29) for _ in range(weights[t])]
-    sums = tuple(sum(column, Counter()) for column in zip(*map(by_path, steps), strict=True))
-    assert_same(by_path(counts), sums)
-    assert counts.steps == len(steps)
 
 
 def test_a_cell_a_diameter_keeps_only_what_occurs():
@@ -168,7 +142,7 @@ def test_a_cell_a_diameter_keeps_only_what_occurs():
 
 
 def test_bad_input_is_refused():
-    cells = random_cells(1)
+    cells = hopping_cells(1)
     with pytest.raises(DataError, match="hold no step"):
         count_moves(cells, 12, 30)
     with pytest.raises(DataError, match="hold no step"):
@@ -186,3 +160,28 @@ def test_bad_input_is_refused():
     cells[7, 31] = 12
     with pytest.raises(DataError, match=r"particle 31 .*frame 7 is in cell 12, the grid has cells 0 to 11"):
         count_moves(cells, 12)
+
+
+@pytest.mark.parametrize(("count", "moves"), [(count_moves, 1), (count_pairs, 2)])
+def test_counts_of_seven_parts_of_a_window_add_up_to_those_of_the_whole(count, moves):
+    cells, lag = hopping_cells(5, n_frames=60), 2
+    starts = np.arange(60 - moves * lag)
+    edges = [0, 5, 6, 20, 31, 40, 52, 60]
+    parts = [
+        count(cells, 12, lag, step_weights=((low <= starts) & (starts < high)).astype(int))
+        for low, high in zip(edges, edges[1:], strict=False)
+    ]
+    whole = count(cells, 12, lag)
+    sums = tuple(sum(column, Counter()) for column in zip(*map(by_path, parts), strict=True))
+    assert_same(sums, by_path(whole))
+    assert sum(part.steps for part in parts) == whole.steps
+
+
+def test_first_and_last_choose_the_steps_of_a_part():
+    cells = hopping_cells(11)
+    weights = np.zeros(28, int)
+    weights[9:20] = 1
+    part = count_moves(cells, 12, 2, first=9, last=20)
+    assert_same(by_path(part), by_path(count_moves(cells, 12, 2, step_weights=weights)))
+    assert part.steps == 11
+    assert_same(by_path(count_moves(cells, 12, 2, first=9, last=99)), naive(cells[9:], 2, 1))

@@ -121,20 +121,6 @@ def test_dynamic_matrix_agrees_with_a_loop_over_pairs():
     assert np.allclose(densities, expected, atol=1e-9)
 
 
-def test_every_step_counted_twice_makes_the_same_dynamic_chain():
-    frames, grid = stirred(9)
-    n_steps = len(frames.times_s) - 1
-    whole = registry.learn("dynamic", frames, grid)
-    twice = registry.learn("dynamic", frames, grid, step_weights=np.full(n_steps, 2))
-    parts = [
-        registry.learn("dynamic", frames, grid, step_weights=part.astype(int))
-        for part in (np.arange(n_steps) < 30, np.arange(n_steps) >= 30)
-    ]
-    for key, array in whole.arrays().items():
-        assert key == "report" or (array == twice.arrays()[key]).all(), key
-    assert (np.union1d(*(part.state_keys for part in parts)) == whole.state_keys).all()
-
-
 def test_a_pair_entered_only_at_the_end_moves_on_as_its_cell_does():
     grid = Grid(0.03, 0.01, 3, 1)
     to_and_fro = [[0, 1] * 4] * 6
@@ -150,3 +136,17 @@ def test_counts_of_single_cells_are_no_pairs():
     single = count_moves(frames.cells, grid.n_cells)
     with pytest.raises(DataError, match="count_pairs makes them"):
         dynamic.from_counts(single, single, grid, 0.025)
+
+
+def test_every_step_counted_twice_makes_the_same_dynamic_chain():
+    frames, grid = stirred(9)
+    n_steps = len(frames.times_s) - 1
+    whole = registry.learn("dynamic", frames, grid)
+    twice = registry.learn("dynamic", frames, grid, step_weights=np.full(n_steps, 2))
+    parts = [
+        registry.learn("dynamic", frames, grid, step_weights=part.astype(int))
+        for part in (np.arange(n_steps) < 30, np.arange(n_steps) >= 30)
+    ]
+    for key, array in whole.arrays().items():
+        assert key == "report" or (array == twice.arrays()[key]).all(), key
+    assert (np.union1d(*(part.state_keys for part in parts)) == whole.state_keys).all()

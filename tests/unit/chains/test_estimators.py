@@ -1,10 +1,13 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
+"""Estimators of the transition matrix, by hand, against loops, and their properties."""
+
 import numpy as np
 import pytest
-from scipy import sparse
+from hypothesis import given
+from hypothesis import strategies as st
+from hypothesis.extra.numpy import arrays
 
-from bedchain.chains.classes import closed_classes
-from bedchain.chains.counting import Counts, count_moves
+from bedchain.chains.counting import count_moves
 from bedchain.chains.estimators import (
     ESTIMATORS,
     leak,
@@ -13,7 +16,6 @@ from bedchain.chains.estimators import (
     visited_density,
 )
 from bedchain.chains.matrix_analysis import long_run_density
-from bedchain.chains.static import compare_estimators
 from bedchain.errors import DataError
 from bedchain.measures.batch import total_variation
 
@@ -26,10 +28,11 @@ def paths(*particles: list[int]) -> np.ndarray:
 
 def uneven_cell():
     """Cell 0 sends on 0.9 of what it holds when that is little (10), 0.1 when it is much (200)."""
-    little = count_moves(paths(*[[0, 1]] * 9, [0, 0]), 2)
-    much = count_moves(paths(*[[0, 1]] * 20, *[[0, 0]] * 180), 2)
-    moves, shares = little.moves + much.moves, little.shares + much.shares
-    return Counts(moves, shares, little.occupied + much.occupied, 2, 1)
+    # two steps that do not follow each other; who is not in cell 0 waits in cell 2
+    little = [[0, 1]] * 9 + [[0, 0]] + [[2, 2]] * 190
+    much = [[0, 1]] * 20 + [[0, 0]] * 180
+    cells = paths(*(one + two for one, two in zip(little, much, strict=True)))
+    return count_moves(cells, 3, step_weights=np.array([1, 0, 1]))
 
 
 def test_per_step_and_pooled_differ_where_occupancy_and_motion_are_linked():
@@ -106,60 +109,27 @@ def test_a_never_visited_cell_stays_put_and_shifts_no_number():
         assert matrix[0, 3] > 0 and openings.returned.size == 0
 
 
-def test_a_cell_entered_only_in_the_last_frame_sends_back_what_came():
-    counts = count_moves(paths([0, 0, 1, 0, 2], [0, 1, 0, 1, 2], [0, 0, 0, 0, 2]), 3)
-    matrix, openings = transition_matrix_with_openings(counts)
-    assert matrix.toarray()[2].tolist() == pytest.approx([2 / 3, 1 / 3, 0])
-    assert (
-        openings.returned.tolist() == [2] and openings.never_left.size == 0 and openings.closed_classes == 1
-    )
-    kept, untouched = transition_matrix_with_openings(counts, "pooled", open_closed=False)
-    assert kept.toarray()[2].tolist() == [0, 0, 1] and untouched.never_left.tolist() == [2]
-    assert transition_matrix(counts, "literal").toarray()[2].tolist() == [0, 0, 1]
-
-
-def test_a_closed_class_of_several_cells_is_opened_in_proportion_to_its_counts():
-    # 0-1 is the bed; one particle leaves for 2-3 and goes to and fro there until the end.
-    bed = [[0, 1] * 4] * 5
-    counts = count_moves(paths(*bed, [0, 0, 2, 3, 2, 3, 2, 3]), 4)
-    matrix, openings = transition_matrix_with_openings(counts)
-    # Cell 2 was left 3 times for 3; the one arrival from 0, reversed, is the fourth.
-    assert matrix.toarray()[2].tolist() == pytest.approx([0.25, 0, 0, 0.75])
-    assert openings.returned.tolist() == [2] and openings.closed_classes == 1
-    assert len(closed_classes(transition_matrix(counts, "pooled", open_closed=False))[0]) == 2
-    trapped = long_run_density(
-        transition_matrix(counts, "pooled", open_closed=False), np.array([1.0, 0, 0, 0])
-    )
-    free = long_run_density(matrix, np.array([1.0, 0, 0, 0]))
-    assert trapped[:2].sum() == 0 and free[:2].sum() > 0.5
-
-
-def test_a_chain_of_dead_ends_opens_in_turn():
-    counts = count_moves(paths(*[[0, 0, 0, 0, 0]] * 9, [0, 0, 1, 2, 3]), 4)
-    matrix, openings = transition_matrix_with_openings(counts)
-    assert [c.tolist() for c in closed_classes(matrix)] == [[0, 1, 2, 3]]
-    assert 3 in openings.returned and matrix[3, 2] == 1.0
-
-
-def test_a_class_apart_from_the_start_is_kept_and_counted():
-    matrix, openings = transition_matrix_with_openings(count_moves(paths([0, 1, 0], [2, 2, 2]), 3))
-    assert openings.closed_classes == 2 and openings.returned.size == 0
-    assert matrix[2, 2] == 1.0
-
-
-def test_closed_classes_by_hand():
-    matrix = sparse.csr_array(np.array([[0.5, 0.5, 0, 0], [0, 0, 1, 0], [0, 1, 0, 0], [0, 0, 0, 1.0]]))
-    assert [c.tolist() for c in closed_classes(matrix)] == [[1, 2], [3]]
-
-
-def test_report_of_each_estimator():
-    counts = uneven_cell()
-    table = compare_estimators(count_moves(paths([0, 1, 0, 1], [0, 0, 0, 0], [1, 1, 2, 1]), 4))
-    assert set(table) == set(ESTIMATORS)
-    assert table["literal"]["leak_1"] > 0 and table["pooled"]["leak_1"] == 0
-    assert table["literal"]["row_sum_error_1"] == pytest.approx(2 / 3)
-    assert table["per_step"]["row_sum_error_1"] < ROUND_OFF
-    assert all(abs(row["mass_1"] - 1) < ROUND_OFF for row in table.values())
-    assert all(0 <= row["long_run_total_variation_1"] <= 1 for row in table.values())
+def test_an_unknown_estimator_names_those_that_exist():
     with pytest.raises(DataError, match="choose one of literal, per_step, pooled"):
-        transition_matrix(counts, "mean")
+        transition_matrix(uneven_cell(), "mean")
+
+
+@given(
+    arrays(np.int32, st.tuples(st.integers(2, 8), st.integers(1, 6)), elements=st.integers(0, 5)),
+    st.sampled_from(sorted(ESTIMATORS)),
+)
+def test_rows_sum_to_one_and_particles_have_no_order(cells, estimator):
+    matrix = transition_matrix(count_moves(cells, 6), estimator).toarray()
+    assert matrix.sum(axis=1) == pytest.approx(np.ones(6), abs=ROUND_OFF) and matrix.min() >= 0
+    turned = transition_matrix(count_moves(np.ascontiguousarray(cells[:, ::-1]), 6), estimator).toarray()
+    assert turned == pytest.approx(matrix, abs=ROUND_OFF)
+
+
+@given(arrays(np.int32, (4, 5), elements=st.integers(0, 3)), st.permutations(range(4)))
+def test_pooled_needs_no_order_of_steps(cells, order):
+    # the same steps one after the other in another order, each from a frame of its own
+    def pooled(steps):
+        frames = np.concatenate([cells[[step, (step + 1) % 4]] for step in steps])
+        return transition_matrix(count_moves(frames, 4, step_weights=np.array([1, 0] * 3 + [1])), "pooled")
+
+    assert pooled(order).toarray() == pytest.approx(pooled(range(4)).toarray(), abs=ROUND_OFF)

@@ -6,7 +6,6 @@ from scipy import sparse
 
 from bedchain.chains import matrix_analysis
 from bedchain.errors import DataError
-from bedchain.measures.batch import total_variation
 
 SOLVER = 1e-9
 
@@ -110,10 +109,6 @@ def test_long_run_density_weighs_closed_classes_by_what_they_catch():
     start = np.array([2.0, 0, 0, 1, 1])
     density = matrix_analysis.long_run_density(sparse.csr_array(matrix), start)
     assert density == pytest.approx([0, 0.2, 0.275, 0.275, 0.25])
-
-
-def test_total_variation_by_hand():
-    assert total_variation(np.array([1.0, 1, 0]), np.array([0, 0.1, 0.1])) == pytest.approx(0.5)
 
 
 def test_first_passage_agrees_with_deeptime_and_by_hand():

@@ -1,6 +1,11 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
+"""Propagation of densities and paths: known walks, dense powers, and their properties."""
+
 import numpy as np
 import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+from hypothesis.extra.numpy import arrays
 from scipy import sparse
 
 from bedchain.chains import propagate
@@ -149,3 +154,44 @@ def test_matrices_that_lose_particles_are_refused():
         propagate.check_matrix(sparse.csr_array(np.array([[2.0, -1.0], [0, 1]])))
     with pytest.raises(DataError, match="must rise"):
         propagate.propagate(reflecting_walk(5), np.ones(5), [3, 1])
+
+
+@st.composite
+def chains(draw):
+    """A small row-stochastic matrix in which some entries are nothing, and two groups of particles."""
+    n = draw(st.integers(1, 6))
+    dense = draw(arrays(float, (n, n), elements=st.sampled_from([0.0, 0.1, 0.5, 1.0, 3.0]))) + np.diag(
+        draw(arrays(float, n, elements=st.sampled_from([0.25, 1.0])))
+    )
+    starts = draw(arrays(float, (2, n), elements=st.sampled_from([0.0, 1.0, 7.0])))
+    return sparse.csr_array(dense / dense.sum(axis=1, keepdims=True)), starts
+
+
+@given(chains(), st.integers(0, 12))
+def test_particles_are_kept_and_groups_do_not_know_of_each_other(chain, steps):
+    matrix, starts = chain
+    both = propagate.propagate(matrix, starts, [steps])[0]
+    assert both.sum(axis=1) == pytest.approx(starts.sum(axis=1), abs=ROUND_OFF) and both.min() >= 0
+    added = propagate.propagate(matrix, 2 * starts[0] + starts[1], [steps])[0, 0]
+    assert added == pytest.approx(2 * both[0] + both[1], abs=1e-10)
+
+
+@given(chains(), st.integers(0, 6), st.integers(0, 6))
+def test_chapman_and_kolmogorov_hold(chain, first, then):
+    matrix, starts = chain
+    at_once = propagate.propagate(matrix, starts, [first + then])[0]
+    in_turn = propagate.propagate(matrix, propagate.propagate(matrix, starts, [first])[0], [then])[0]
+    assert in_turn == pytest.approx(at_once, abs=1e-10)
+    squared = sparse.csr_array(matrix @ matrix)
+    two_by_two = propagate.propagate(squared, starts, [then])[0]
+    assert two_by_two == pytest.approx(propagate.propagate(matrix, starts, [2 * then])[0], abs=1e-10)
+
+
+@given(chains(), st.integers(0, 6))
+def test_what_is_expected_forward_is_expected_backward(chain, steps):
+    matrix, starts = chain
+    starts = starts + 1.0  # no group is empty
+    observable = np.arange(matrix.shape[0], dtype=float)[None]
+    backward = propagate.expected_values(matrix, starts, observable, steps)[steps, :, 0]
+    forward = propagate.propagate(matrix, starts, [steps])[0] @ observable[0] / starts.sum(axis=1)
+    assert backward == pytest.approx(forward, abs=1e-10)

@@ -1,11 +1,8 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 import numpy as np
 import pytest
-from scipy.spatial import KDTree
 
 from bedchain.chains import registry
-from bedchain.chains.frame_distance import frame_fields
-from bedchain.chains.nearest_particle import nearest
 from bedchain.errors import DataError
 from bedchain.measures.mixing import remaining_from_positions, sides
 from bedchain.trajectory.frames import Frames
@@ -29,35 +26,6 @@ def swinging(n_frames: int, n_particles: int = 2000, period: int = 16, seed: int
     z = np.tile(rng.uniform(0.0, 0.08, n_particles), (n_frames, 1))
     vx = 0.05 * np.cos(turn) * 2 * np.pi / (period * INTERVAL) * np.ones(n_particles)
     return Frames(np.arange(n_frames) * INTERVAL, x, z, grid.cell_of(x, z), vx, np.zeros(x.shape)), grid
-
-
-@pytest.mark.parametrize("count", [1, 3, 200])
-def test_the_nearest_particle_is_that_of_a_tree(count):
-    rng, size = np.random.default_rng(count), np.array([0.1, 0.4])
-    for height in (0.4, 0.05):
-        particles = rng.random((2, count)) * [[0.1], [height]]
-        tracers = np.concatenate((rng.random((2, 500)), [[0, 1, 0, 1], [0, 0, 1, 1]]), axis=1) * size[:, None]
-        for dtype in (np.float64, np.float32):
-            held = particles.astype(dtype)
-            away = KDTree(held.T.astype(float)).query(tracers.T)[0]
-            closest = nearest(tracers, held, size)
-            assert np.hypot(*(held[:, closest] - tracers)) == pytest.approx(away, abs=1e-9)
-
-
-def test_distances_agree_with_a_plain_loop():
-    frames = kept_velocity(300, 5, 0.1, 0.1, 0.1, seed=7)
-    learned = frame_fields(frames, Grid(0.1, 0.1, 10, 10), 0.045)
-    assert (learned.coarse.columns, learned.coarse.rows) == (2, 2)
-    fields = np.zeros((5, 3, 4))
-    for frame in range(5):
-        for p in range(300):
-            cell = int(frames.z_m[frame, p] >= 0.05) * 2 + int(frames.x_m[frame, p] >= 0.05)
-            fields[frame, :, cell] += 1, frames.vx_m_s[frame, p], frames.vz_m_s[frame, p]
-    scale = np.sqrt(((fields - fields.mean(axis=0)) ** 2).mean(axis=0).sum(axis=1))
-    expected = [[np.sqrt((((a - b) / scale[:, None]) ** 2).sum()) for a in fields] for b in fields]
-    assert learned.distances() == pytest.approx(np.array(expected), rel=1e-5, abs=1e-6)
-    assert (learned.distances() ** 2).mean() == pytest.approx(6, rel=1e-5)
-    assert learned.distances_from(learned.last_of(frames.part(slice(0, 4)))).argmin() == 3
 
 
 def test_jumps_lead_to_the_most_alike_frames_far_enough_away():

@@ -5,7 +5,8 @@ import pytest
 from bedchain.errors import DataError
 from bedchain.measures.lagrangian import Places, corrected, dispersion_error, in_cells, statistics
 from bedchain.trajectory.grid import Grid
-from made.persistent_walk import INTERVAL_S, squared, steps
+from made.frames import INTERVAL_S, free_walk
+from made.frames import squared_displacement as squared
 
 MEMORY_S, SPEED, WALKERS = 0.15, 0.2, 20_000
 STEPS, SPAN = np.array([0, 2, 4, 8, 16]), 4
@@ -17,7 +18,8 @@ SAMPLING = 0.02
 def walk():
     """Free walkers along x and z, lifted so that all heights are positive."""
     rng = np.random.default_rng(1)
-    x, z = (steps(60, WALKERS, MEMORY_S, SPEED, rng)[0] for _ in range(2))
+    starts = (rng.normal(0, SPEED, WALKERS) for _ in range(2))
+    x, z = (free_walk(v, 60, MEMORY_S, SPEED, rng)[0] for v in starts)
     return Places(x, z + 10.0, INTERVAL_S)
 
 

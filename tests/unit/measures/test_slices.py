@@ -2,19 +2,9 @@
 """Profiles of slices: shares of spheres against integrals and points, averages against loops."""
 
 import numpy as np
-import pandas as pd
 import pytest
 
-from bedchain.errors import UserError
 from bedchain.measures.slices import boxes_around, profile, share_between, solids_in_boxes
-from bedchain.studies.validation import (
-    BedFrames,
-    compare,
-    difference_metrics,
-    profile_with_band,
-    read_points,
-    rms,
-)
 
 RADIUS = 6e-4
 VOLUME = 4 / 3 * np.pi * RADIUS**3
@@ -98,73 +88,3 @@ def test_velocity_is_the_mean_over_particles_and_not_over_frames():
     mean = np.stack([three, one]).mean(axis=0)
     assert profile("particle_velocity_m_s", mean, boxes)[0] == pytest.approx(0.0, abs=1e-15)
     assert profile("voidage_1", mean, boxes)[0] == pytest.approx(1 - 2 * VOLUME / (8e-3 * 8e-3 * 0.01))
-
-
-def test_no_particle_means_voidage_one_and_no_velocity():
-    boxes = boxes_around(np.array([0.02]), 2e-3, 0.02, 4e-3, 0.044, 0.01)
-    nothing = np.zeros((4, 2, 1))
-    assert profile_with_band("voidage_1", nothing, boxes, 2)[0] == 1.0
-    assert np.isnan(profile("particle_velocity_m_s", nothing[0], boxes)).all()
-
-
-def test_the_band_of_independent_frames_is_that_of_their_mean():
-    rng = np.random.default_rng(8)
-    boxes = boxes_around(np.array([0.02]), 2e-3, 0.02, 4e-3, 0.044, 0.01)
-    solids = rng.normal(4e-8, 1e-8, (400, 2, 1))
-    _, replicates = profile_with_band("voidage_1", solids, boxes, 1)
-    expected = 1e-8 / np.sqrt(400) / boxes.volumes_m3[0]
-    assert replicates.std() == pytest.approx(expected, rel=0.2)
-
-
-def test_a_bed_compared_with_itself_differs_by_nothing_and_with_a_shift_by_the_shift():
-    rng = np.random.default_rng(2)
-    frames = np.stack(
-        [np.stack([*beads(2000, seed)[:2], np.zeros(2000), rng.normal(0.1, 0.3, 2000)]) for seed in range(6)]
-    )
-    bed = BedFrames(frames, 0.025, RADIUS, 0.044, 0.01)
-    x = np.array([0.005, 0.02, 0.035])
-    points = pd.concat(
-        pd.DataFrame({"quantity": name, "height_m": height, "position_x_m": x, "value": 0.0})
-        for name in ("voidage_1", "particle_velocity_m_s")
-        for height in (0.015, 0.03)
-    )
-    table, _ = compare(points, bed)
-    points["value"] = table["simulated"].to_numpy() + np.where(points["quantity"] == "voidage_1", 0.03, 0.0)
-    _, metrics = compare(points, bed)
-    found = metrics.set_index("quantity")["value"]
-    assert found["voidage_error_rms"] == pytest.approx(0.03)
-    assert found["voidage_error_mean"] == pytest.approx(-0.03)
-    assert found["voidage_15_mm_error_rms"] == pytest.approx(0.03)
-    assert found["particle_velocity_error_rms"] == pytest.approx(0.0, abs=1e-12)
-
-
-def test_rms_and_its_band_by_hand():
-    assert rms(np.array([3.0, -4.0])) == pytest.approx(np.sqrt(12.5))
-    drawn = np.array([[1.0, 1.0], [2.0, 2.0], [3.0, 3.0]])
-    rows = difference_metrics("voidage", "1", np.array([2.0, 2.0]), drawn, np.array([0.0, 0.0]))
-    assert rows[0]["value"] == 2.0 and 1.0 < rows[0]["ci_low"] < rows[0]["ci_high"] < 3.0
-    assert rows[1]["quantity"] == "voidage_error_mean"
-
-
-@pytest.mark.parametrize(
-    ("text", "said"),
-    [
-        ("quantity,height_m,value\nvoidage_1,0.01,0.5\n", "lacks the columns position_x_m"),
-        ("quantity,height_m,position_x_m,value\nheat,0.01,0.01,0.5\n", "unknown quantity heat"),
-        (
-            "quantity,height_m,position_x_m,value\nvoidage_1,0.01,0.01,high\n",
-            "row 1 of the points is no number",
-        ),
-        ("quantity,height_m,position_x_m,value\n", "row 1"),
-    ],
-)
-def test_bad_points_are_refused(tmp_path, text, said):
-    file = tmp_path / "measured.csv"
-    file.write_text(text, encoding="utf-8")
-    with pytest.raises(UserError, match=said):
-        read_points(file)
-
-
-def test_a_case_without_points_is_told_so(tmp_path):
-    with pytest.raises(UserError, match="no measured points"):
-        read_points(tmp_path / "measured.csv")

@@ -3,6 +3,8 @@
 
 import numpy as np
 import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
 
 from bedchain.errors import UserError
 from bedchain.trajectory.dumps import frame_of, read_dump
@@ -144,3 +146,46 @@ def test_a_particle_exactly_on_the_wall_is_inside(tmp_path, table):
     table[0, 1], table[1, 2] = 0.09, 0.0
     write_binary_dump(tmp_path / "a.bin", 0, table, BOX)
     assert frame(tmp_path / "a.bin").shape == (5, 7)
+
+
+@st.composite
+def tables(draw):
+    """Particles with any finite numbers that the bed allows, in any order of ids."""
+    number = draw(st.integers(0, 6))
+    ids = draw(st.permutations(range(1, number + 1)))
+    inside = [st.floats(0, upper, allow_subnormal=False) for upper in (0.08, 0.44)]
+    speed = st.floats(-1e6, 1e6, allow_subnormal=False)
+    rows = [[float(i), *(draw(kind) for kind in (*inside, speed, speed))] for i in ids]
+    return np.array(rows).reshape(number, 5)
+
+
+@given(tables(), st.integers(0, 2**62), st.integers(1, 4))
+def test_what_is_written_is_read(tmp_path, table, step, ranks):
+    write_binary_dump(tmp_path / "a.bin", step, table, BOX, ranks)
+    binary = read_dump(tmp_path / "a.bin", COLUMNS)
+    assert binary.step == step and (binary.values == table).all() and (binary.box == BOX).all()
+    write_text_dump(tmp_path / "a.txt", step, table, BOX)
+    text = read_dump(tmp_path / "a.txt", COLUMNS)
+    assert text.step == step and text.values == pytest.approx(table, rel=TEXT_PRECISION)
+
+
+@settings(max_examples=200)
+@given(st.sampled_from(["bin", "txt"]), st.data())
+def test_a_spoilt_dump_is_refused_or_is_another_frame(tmp_path, form, data):
+    rows = np.column_stack([IDS, np.linspace(0, 0.09, 7), np.linspace(0, 0.4, 7), IDS, -IDS])
+    path = tmp_path / f"a.{form}"
+    (write_binary_dump if form == "bin" else write_text_dump)(path, 1250, rows, BOX)
+    content = bytearray(path.read_bytes())
+    cut = data.draw(st.booleans())
+    at = data.draw(st.integers(0, len(content) - 1))
+    if cut:
+        del content[at:]
+    else:
+        content[at] ^= data.draw(st.integers(1, 255))
+    path.write_bytes(content)
+    try:
+        values = frame(path)
+    except UserError:
+        return
+    # a byte of a number may make another number, and nothing else: a file that is cut off is never taken
+    assert not cut and values.shape == (5, 7) and (values[0] == IDS).all() and np.isfinite(values).all()

@@ -70,8 +70,14 @@ def test_from_one_cell_to_one_a_diameter():
 
 
 @pytest.mark.parametrize(
-    "sizes", [(0.0, 1.0, 1, 1), (1.0, float("nan"), 1, 1), (1.0, 1.0, 0, 1), (1, 1, 10**5, 10**5)]
+    ("sizes", "message"),
+    [
+        ((0.0, 1.0, 1, 1), "both sizes must be positive"),
+        ((1.0, float("nan"), 1, 1), "both sizes must be positive"),
+        ((1.0, 1.0, 0, 1), "at least 1 x 1 is needed"),
+        ((1, 1, 10**5, 10**5), "must fit in int32"),
+    ],
 )
-def test_impossible_grids_are_refused(sizes):
-    with pytest.raises(DataError):
+def test_impossible_grids_are_refused(sizes, message):
+    with pytest.raises(DataError, match=message):
         Grid(*sizes)

@@ -9,6 +9,7 @@ from bedchain.errors import DataError
 from bedchain.trajectory.frames import Frames
 from bedchain.trajectory.grid import Grid
 from bedchain.uncertainty import bands
+from bedchain.uncertainty.bands import memory
 
 
 def correlated_series(n: int, rho: float, rng: np.random.Generator) -> np.ndarray:
@@ -65,7 +66,8 @@ def test_correlation_time_of_a_known_series():
     rng = np.random.default_rng(6)
     assert bands.correlation_steps(correlated_series(200_000, 0.8, rng)) == pytest.approx(9.0, rel=0.15)
     assert bands.correlation_steps(rng.normal(size=50_000)) < 1.3
-    assert bands.correlation_steps(np.ones(10)) == 1.0
+    # the mean of 0.05 is off by round-off, which is no memory
+    assert bands.correlation_steps(np.ones(10)) == bands.correlation_steps(np.full(12_000, 0.05)) == 1.0
 
 
 def gusts(rng: np.random.Generator, n_frames: int, n_particles: int) -> np.ndarray:
@@ -121,3 +123,13 @@ def test_bands_on_the_curves_of_every_model(name):
     ]
     assert samples.shape == (30, 11, 2) and (low[0] == high[0]).all()
     assert ((low <= middle) & (middle <= high))[1:].mean() > 0.8 and (high - low)[1:].min() > 0
+
+
+def test_memory_is_that_of_a_sloshing_bed():
+    rng = np.random.default_rng(2)
+    phase = np.cumsum(rng.normal(0, 0.3, 12_000))
+    x = 0.05 + 0.02 * np.cos(phase)[:, None] + rng.normal(0, 0.005, (12_000, 40))
+    z = np.full(x.shape, 0.05)
+    frames = Frames(np.arange(len(x)) * 0.025, x, z, np.zeros(x.shape, np.int32))
+    # a cosine of a random walk forgets with exp(-0.3^2 n / 2): integrated, 2 / 0.045 = 44 frames
+    assert memory(frames, 0.05) == pytest.approx(44, rel=0.25)

@@ -5,7 +5,6 @@ import numpy as np
 import pytest
 from scipy.signal import lfilter
 
-from bedchain.measures.voidage import Slab, voidage_profiles
 from bedchain.uncertainty.stationarity import drift, drift_table
 
 # a share of 150 series that is truly 5 % is below this with a probability of 99.9 %
@@ -52,13 +51,6 @@ def test_a_drift_of_some_swings_is_found():
     drifts = [drift(series) for series in drifting]
     assert np.mean([not line.stationary and line.low > 0 for line in drifts]) > 0.9
     assert np.mean([line.change for line in drifts]) == pytest.approx(3.5, abs=0.3)
-
-
-def test_voidage_of_known_rows():
-    z = np.array([[0.001, 0.002, 0.003, 0.015], [0.001, 0.015, 0.016, 0.017]])
-    found = voidage_profiles(z, np.array([0, 0.01, 0.02]), 0.05, Slab(1e-3, 1e-3))
-    one = np.pi / 6 * 1e-9 / (0.05 * 0.01 * 1e-3)
-    np.testing.assert_allclose(found, [[1 - 3 * one, 1 - one], [1 - one, 1 - 3 * one]])
 
 
 def test_table_has_every_series_and_every_row_that_holds_particles():

@@ -5,12 +5,11 @@ import numpy as np
 import pytest
 
 from bedchain.chains import registry
-from bedchain.errors import DataError
 from bedchain.studies.stability.chain_runs import run_chain
-from bedchain.studies.stability.chain_settings import WalkerWindow, chain_settings, learn_shut
+from bedchain.studies.stability.chain_settings import WalkerWindow, chain_settings
 from bedchain.studies.stability.settings import ON
 from bedchain.studies.stability.verdict import INACCURATE, REFUSED, STABLE
-from bedchain.studies.stability.walkers import HEIGHT, WIDTH, lifted_last, walkers, with_drain
+from bedchain.studies.stability.walkers import HEIGHT, WIDTH
 from bedchain.trajectory.grid import Grid
 
 REDUCED = {item.name: item for item in chain_settings() if item.reduced}
@@ -74,27 +73,6 @@ def test_probabilities_that_do_not_sum_to_one_are_refused():
     assert found.outcome == REFUSED and "off a sum of 1" in found.reason
 
 
-def test_the_guard_off_differs_in_the_trap_only():
-    one = WalkerWindow(top=0.5, change=lifted_last).case()
-    open_chain = registry.learn("static", one.frames, one.grid)
-    shut = learn_shut("static", one.frames, one.grid)
-    differing = np.flatnonzero(np.abs(open_chain.matrix - shut.matrix).sum(axis=1) > 1e-12)
-    assert differing.size == 1
-    assert shut.matrix[differing[0], differing[0]] == 1.0
-
-
-def test_walkers_stay_in_the_box_and_remember_their_velocity():
-    frames = walkers(41, 400)
-    for place, size in ((frames.x_m, WIDTH), (frames.z_m, HEIGHT)):
-        assert place.min() >= 0 and place.max() <= size
-    assert walkers(5, 100, top=0.5).z_m.max() <= HEIGHT / 2
-    same = np.corrcoef(frames.vx_m_s[0], frames.vx_m_s[1])[0, 1]
-    assert 0.3 < same < 1
-    drained = with_drain(frames)
-    corner = (drained.x_m > 0.75 * WIDTH) & (drained.z_m > 0.75 * HEIGHT)
-    assert (np.diff(corner.astype(int), axis=0) >= 0).all() and 0 < corner[-1].mean() < 1
-
-
 @pytest.mark.parametrize("name", list(registry.LEARNERS))
 def test_a_step_that_is_asked_for_twice_is_given_twice(name):
     one = WalkerWindow(columns=2, rows=2).case()
@@ -104,8 +82,3 @@ def test_a_step_that_is_asked_for_twice_is_given_twice(name):
     for rng in (None, np.random.default_rng(1)):
         found = chain.densities(one.start, everyone, [0, 3, 3], rng)
         assert (found[1] == found[2]).all() and found[1].sum() == pytest.approx(400)
-
-
-def test_a_window_without_frames_is_refused():
-    with pytest.raises(DataError, match="window is empty"):
-        walkers(0, 10)

@@ -8,7 +8,6 @@ import pytest
 from scipy import stats
 
 from bedchain.measures.batch import total_variation
-from bedchain.studies.tradeoff.measured_chains import MOMENTS, half_moments
 from bedchain.studies.tradeoff.observables import (
     BedObservables,
     Reference,
@@ -16,7 +15,6 @@ from bedchain.studies.tradeoff.observables import (
     density_errors,
     scalar_errors,
 )
-from bedchain.studies.tradeoff.reference import granular_temperature, mixing_time
 from bedchain.uncertainty.noise_floor import noise_floor
 from made.realisations import realisations
 
@@ -37,9 +35,10 @@ def test_curve_errors_are_those_of_a_loop_in_noise_floors():
 
 
 def test_the_mean_of_all_realisations_has_one_floor_and_another_bed_sqrt_two():
-    many = realisations(number=400)
+    many = realisations(number=60)
     exact = curve_errors(many, many.curves.mean(axis=0)[None, None])
-    assert exact["mixing_floors_1"] == pytest.approx(1.0, rel=0.01)
+    # the floor has 59 in its denominator where the error has 60
+    assert exact["mixing_floors_1"] == pytest.approx(np.sqrt(59 / 60), rel=1e-9)
     draws = np.stack([realisations(1, seed=seed).curves for seed in range(10, 30)])
     assert curve_errors(many, draws)["mixing_floors_1"] == pytest.approx(np.sqrt(2), rel=0.02)
 
@@ -97,38 +96,3 @@ def test_scalars_have_students_interval_of_one_more_realisation():
     assert row["bed_height_error_m"] == pytest.approx(0.07 - values.mean())
     assert row["bed_height_ci_high_m"] - row["bed_height_ci_low_m"] == pytest.approx(2 * half)
     assert not [name for name in row if name.startswith(("unknown", "pressure"))]
-
-
-def test_halves_of_a_window_have_rising_moments_inside():
-    for length in (2, 3, 80, 81):
-        first, second = half_moments(length)
-        assert len(first) == len(second) == MOMENTS
-        assert first[0] >= 1 and first[-1] <= second[0] and second[-1] == length
-        assert (np.diff(first) >= 0).all() and (np.diff(second) >= 0).all()
-
-
-def test_mixing_time_of_an_exponential_is_its_time_constant():
-    time = 0.025 * np.arange(100)
-    apart = np.exp(-time / 0.4)
-    one, other = 0.6 + 0.4 * apart, 0.4 + 0.6 * apart
-    assert mixing_time(one, other, 0.025) == pytest.approx(0.4, rel=1e-3)
-    assert np.isnan(mixing_time(one[:10], other[:10], 0.025))
-
-
-def test_granular_temperature_is_that_of_a_loop_and_of_the_theory():
-    rng = np.random.default_rng(4)
-    cells = rng.integers(0, 30, (5, 2000)).astype(np.int32)
-    drift = rng.normal(0, 1.0, 30)[cells]
-    vx, vz = (drift + rng.normal(0, 0.2, cells.shape) for _ in range(2))
-    found = granular_temperature(cells, vx, vz, 40)
-    squares, freedom = 0.0, 0
-    for frame in range(5):
-        for cell in range(40):
-            inside = cells[frame] == cell
-            for v in (vx[frame, inside], vz[frame, inside]):
-                squares += ((v - v.mean()) ** 2).sum() if v.size else 0.0
-            freedom += max(int(inside.sum()) - 1, 0)
-    assert found == pytest.approx(squares / (2 * freedom))
-    # sampling error of 20 000 squares is 1 %
-    assert found == pytest.approx(0.04, rel=0.05)
-    assert np.isnan(granular_temperature(np.array([[0, 1]], np.int32), vx[:1, :2], vz[:1, :2], 2))

@@ -9,39 +9,9 @@ import yaml
 from bedchain.case.presets import count_near
 from bedchain.errors import UserError
 from bedchain.studies.pareto import pareto_front
-from bedchain.studies.tradeoff.chain_settings import FACTORIAL, ORDER, CaseChain, chain_settings
+from bedchain.studies.tradeoff.chain_settings import FACTORIAL, ORDER, chain_settings
 from bedchain.studies.tradeoff.presets import choose, knee, nominal_cell, write_presets
-from bedchain.trajectory.grid import Grid
-
-
-def own(columns=10, rows=40, width=0.1, height=0.4, frames=80, **changes):
-    """The short bed's own chain, or another."""
-    values = {
-        "lag": 1, "estimator": "pooled", "learning": slice(60, 60 + frames + 1), "compared": frames,
-        "interval_s": 0.025, "diameter_m": 1e-3, "splits": (width / 2, round(0.2 * height, 6)),
-    }  # fmt: skip
-    return CaseChain(Grid(width, height, columns, rows), **values | changes)
-
-
-def test_every_cell_size_meets_every_lag_and_nothing_comes_twice():
-    found = chain_settings(own())
-    assert len({one.key.removeprefix(one.axis) for one in found}) == len(found)
-    factorial = {(one.columns, one.rows, one.lag) for one in found if one.axis == FACTORIAL}
-    grids, lags = ({key[:2] for key in factorial}, {key[2] for key in factorial})
-    assert lags == {1, 2, 4, 10, 20, 40, 80}
-    assert {(40, 160), (20, 80), (10, 40), (2, 10)} <= grids
-    assert len(factorial) == len(grids) * len(lags)
-    assert {one.tracers for one in found if one.axis == "tracers"} == {10**n for n in range(2, 7)}
-    assert {one.model for one in found if one.axis == ORDER} == {"dynamic"}
-
-
-def test_settings_that_do_not_fit_are_left_out():
-    small = chain_settings(own(2, 6, 0.02, 0.06, frames=5, diameter_m=4e-3))
-    assert small and max(one.lag for one in small) <= 5
-    assert all(0.02 / one.columns >= 4e-3 and 0.06 / one.rows >= 4e-3 for one in small)
-    # the second order needs two steps
-    assert all(2 * one.lag <= 5 for one in small if one.model == "dynamic")
-    assert not [one for one in chain_settings(own(models=("static",))) if one.axis == ORDER]
+from made.realisations import own
 
 
 def test_cells_divide_levels_and_keep_the_lines():
@@ -56,9 +26,10 @@ def test_cells_divide_levels_and_keep_the_lines():
 
 def test_nominal_cells_give_the_columns_and_rows_that_they_stand_for():
     for case in (own(), own(27, 105, 0.27, 1.05, splits=(0.135, 0.25))):
-        for one in chain_settings(case):
-            if one.axis in (FACTORIAL, ORDER):
-                assert case.near(nominal_cell(one.columns, one.rows, case)) == (one.columns, one.rows)
+        tried = [one for one in chain_settings(case) if one.axis in (FACTORIAL, ORDER)]
+        assert len(tried) > 20
+        for one in tried:
+            assert case.near(nominal_cell(one.columns, one.rows, case)) == (one.columns, one.rows)
 
 
 def front_table():

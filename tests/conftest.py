@@ -1,0 +1,13 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Properties are tried on the same examples each time, and on few of them: the fast suite stays fast."""
+
+from hypothesis import HealthCheck, settings
+
+settings.register_profile(
+    "bedchain",
+    derandomize=True,
+    deadline=None,
+    max_examples=60,
+    suppress_health_check=[HealthCheck.too_slow, HealthCheck.function_scoped_fixture],
+)
+settings.load_profile("bedchain")

@@ -1,0 +1,83 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Rows of diagnostics.csv, by hand."""
+
+import numpy as np
+import pytest
+
+from bedchain.chains import registry
+from bedchain.comparison import diagnostics
+from bedchain.comparison.metrics import metric
+from bedchain.trajectory.frames import Frames
+from bedchain.trajectory.grid import Grid
+from made.frames import framed
+
+GRID = Grid(0.02, 0.03, 2, 3)
+
+
+def by(rows, *keys):
+    return {tuple(row.get(key, "") for key in keys): row["value"] for row in rows}
+
+
+def test_a_table_has_its_columns_and_empty_places_where_nothing_was_given():
+    table = diagnostics.table([metric("leak", "static", 0.5, part="literal")])
+    assert tuple(table.columns) == diagnostics.COLUMNS
+    assert table.loc[0, ["quantity", "part", "value", "unit"]].tolist() == ["leak", "literal", 0.5, "1"]
+    assert table[["lag_s", "time_s", "height_m", "ci_low", "ci_high"]].isna().all(axis=None)
+
+
+def test_estimators_of_both_chains():
+    # cell 1 is empty in every other step: literal loses half of its row
+    frames = framed(np.array([[0, 0], [1, 0], [0, 0], [1, 0], [0, 0]]), GRID)
+    rows = diagnostics.estimator_rows(frames, GRID, 1, ["static", "dynamic", "jump"])
+    value = by(rows, "quantity", "source", "part")
+    assert {row["source"] for row in rows} == {"static", "dynamic"} and len(rows) == 18
+    assert value["row_sum_error", "static", "literal"] == pytest.approx(0.5)
+    # cell 1 holds 2 of 8 particles at the starts
+    assert value["leak", "static", "literal"] == pytest.approx(0.25 * 0.5)
+    assert value["leak", "static", "pooled"] == value["row_sum_error", "dynamic", "pooled"] == 0
+    assert value["long_run_total_variation", "static", "pooled"] == pytest.approx(0, abs=1e-12)
+
+
+def test_times_of_a_column_that_is_climbed_step_by_step():
+    # from each row to the next, and from the top to the bottom: half stay where they are
+    grid = Grid(0.01, 0.03, 1, 3)
+    cells = np.array([[0, 0, 1, 1, 2, 2], [0, 1, 1, 2, 2, 0]])
+    chain = registry.learn("static", framed(cells, grid), grid)
+    value = by(diagnostics.time_rows(chain, np.ones(3), 0.1, top=2), "quantity", "part")
+    lag = chain.lag_s
+    for part in ("mean", "shortest", "longest"):
+        assert value["residence_time", part] == pytest.approx(2 * lag)
+    assert value["first_passage_time", ""] == pytest.approx(4 * lag)
+    # eigenvalues (1 + w) / 2 with w a third root of 1: of size 1/2
+    assert value["mixing_time", ""] == pytest.approx(2 * lag)
+
+
+def test_a_bed_at_rest_has_neither_residence_nor_passage():
+    grid = Grid(0.01, 0.03, 1, 3)
+    still = registry.learn("static", framed(np.tile(np.arange(3), (3, 1)), grid), grid)
+    rows = diagnostics.time_rows(still, np.ones(3), 0.1, top=2)
+    assert [row["quantity"] for row in rows] == ["mixing_time"]
+
+
+def test_arrivals_and_mixing_by_hand():
+    frames = framed(np.array([[0, 1, 4], [2, 1, 4], [4, 3, 4]]), GRID)
+    row = diagnostics.arrival_row("dem", frames, GRID, top=2)
+    assert row["value"] == 0.5 and row["time_s"] == pytest.approx(0.05) and row["height_m"] == 0.02
+    # apart at first, then each cell as the whole
+    numbers = np.array([[[4, 0], [0, 4], [4, 0], [0, 4]], [[2, 2], [2, 2], [4, 0], [0, 4]]])
+    value = by(diagnostics.lacey_rows("dem", np.array([0.0, 1.0]), numbers), "part", "time_s")
+    assert value["radial", 0.0] == value["axial", 1.0] == pytest.approx(0)
+    assert value["radial", 1.0] == pytest.approx(0.25 / (0.25 - 0.0625))
+
+
+def test_dispersion_rows_need_enough_displacements():
+    rng = np.random.default_rng(1)
+    x = np.cumsum(rng.normal(0, 0.1, (41, 30)), axis=0)
+    z = np.where(np.arange(30) < 28, 0.005, 0.025) * np.ones(x.shape)
+    frames = Frames(np.arange(41) * 0.025, x, z, np.zeros(x.shape, np.int32))
+    rows = diagnostics.dispersion_rows("dem", frames, GRID, [1])
+    # 2 x 40 displacements in the top row are too few
+    assert {row["height_m"] for row in rows} == {0.005}
+    value = by(rows, "quantity")
+    assert value[("dispersion_z",)] == 0
+    assert value[("dispersion_x",)] == pytest.approx(0.01 / 0.05, rel=0.1)

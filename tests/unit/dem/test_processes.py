@@ -1,0 +1,78 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Child processes: their output in the log, their last words in the error, progress read from their lines."""
+
+from pathlib import Path
+
+import pytest
+
+from bedchain.dem.processes import Progress, error_lines, on_ranks, run_deck, run_logged, solver_environment
+from bedchain.errors import UserError
+
+
+def test_output_goes_to_the_log_line_by_line_and_is_appended(tmp_path):
+    log, lines = tmp_path / "log", []
+    for word in ("one", "two"):
+        run_logged(["sh", "-c", f"echo {word}; echo to stderr >&2"], log, lines.append)
+    assert log.read_text().split("\n") == ["one", "to stderr", "two", "to stderr", ""]
+    assert lines == ["one\n", "to stderr\n", "two\n", "to stderr\n"]
+
+
+def test_a_failure_shows_the_program_s_own_error_and_where_its_log_is(tmp_path):
+    command = "for i in $(seq 40); do echo step $i; done; echo ERROR: lost atoms; echo after; exit 3"
+    with pytest.raises(UserError) as caught:
+        run_logged(["sh", "-c", command], tmp_path / "log")
+    message = str(caught.value)
+    assert message.startswith("sh ended with code 3:\n  ERROR: lost atoms\n  after\n")
+    assert message.endswith(f"its whole log: {tmp_path / 'log'}") and "step" not in message
+
+
+def test_a_program_that_is_not_there_is_named(tmp_path):
+    with pytest.raises(UserError, match="the program no-such-program is not installed: run ./run"):
+        run_logged(["no-such-program"], tmp_path / "log")
+
+
+def test_a_child_ends_when_its_reader_fails(tmp_path):
+    numbers = []
+
+    def reader(line):
+        numbers.append(line.strip())
+        raise KeyboardInterrupt
+
+    with pytest.raises(KeyboardInterrupt):
+        run_logged(["sh", "-c", "echo $$; exec sleep 600"], tmp_path / "log", reader)
+    assert len(numbers) == 1 and not Path(f"/proc/{numbers[0]}").exists()
+
+
+def test_without_an_error_line_the_last_lines_are_shown(tmp_path):
+    (tmp_path / "log").write_text("\n\n".join(map(str, range(30))))
+    assert error_lines(tmp_path / "log").split() == [str(line) for line in range(18, 30)]
+
+
+def test_decks_get_their_variables_and_ranks(tmp_path, monkeypatch):
+    commands = []
+    monkeypatch.setattr("bedchain.dem.processes.run_logged", lambda command, log: commands.append(command))
+    run_deck(tmp_path / "in.x", {"steps": 5}, tmp_path / "log", ranks=2)
+    liggghts = ["liggghts", "-in", str(tmp_path / "in.x"), "-log", "none", "-var", "steps", "5"]
+    assert commands == [["mpirun", "-np", "2", *liggghts]]
+    assert on_ranks(liggghts, 1) == liggghts
+
+
+def test_what_the_user_has_set_stays(monkeypatch):
+    monkeypatch.setenv("FOAM_SIGFPE", "true")
+    monkeypatch.delenv("WM_PROJECT_DIR", raising=False)
+    environment = solver_environment()
+    assert environment["FOAM_SIGFPE"] == "true" and environment["WM_PROJECT_DIR"].startswith("/")
+
+
+def test_progress_says_what_is_left_now_and_then_and_keeps_the_totals(capsys):
+    progress = Progress(end_s=5.0, every_s=1000.0)
+    progress.last = -1e9  # long ago
+    line = "progress time 1 s, 900 s per simulated second, 3 s left, gas 8 %\n"
+    progress(line)
+    progress(line)
+    # 4 s at 900 s each
+    assert capsys.readouterr().err == (
+        "run_dem: 1.000 of 5 s simulated, 900 s per simulated second, 1:00:00 left (gas 8 %)\n"
+    )
+    progress("totals simulated 0.5 wall 10 dem 7 exchange 1 gas 2")
+    assert progress.totals == {"simulated": 0.5, "wall": 10, "dem": 7, "exchange": 1, "gas": 2}

@@ -1,0 +1,89 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""The trajectory of a run, and every fault of its manifest and frames named; runs are in tests/stages."""
+
+import json
+
+import numpy as np
+import pytest
+
+from bedchain.errors import UserError
+from bedchain.trajectory.store import open_trajectory, read_manifest, remedy, write_trajectory
+from made.synthetic_bed import STAMP, rolling_bed, write_run
+
+TIMES = np.round(np.arange(0, 0.2 + 1e-9, 0.025), 6)
+
+
+@pytest.fixture
+def bed(tmp_path):
+    """Frames of 20 particles, and the manifest of the run that they are written as."""
+    frames = rolling_bed(20, 0.08, 0.2, TIMES)
+    return frames, write_run(tmp_path, frames, TIMES, 0.08, 0.2, segment=0.1)
+
+
+def parse(dem):
+    files = dem.parent / "trajectory.npy", dem.parent / "trajectory.json"
+    write_trajectory(dem, *files, 0.08, 0.2, progress=False)
+    return open_trajectory(*files)
+
+
+def changed(dem, change):
+    """The manifest with a change made to it."""
+    manifest = json.loads(dem.read_text())
+    change(manifest)
+    dem.write_text(json.dumps(manifest))
+
+
+def test_frames_come_back_in_single_precision_and_by_id(bed):
+    frames, dem = bed
+    store, about = parse(dem)
+    assert (store == frames.astype(np.float32)).all()
+    assert about["times_s"] == pytest.approx(TIMES) and (about["ids"], about["number"]) == ([1, 20], 20)
+
+
+def test_columns_that_the_dumps_lack_are_nothing_or_refused(bed):
+    _, dem = bed
+    changed(dem, lambda manifest: manifest.update(columns=["id", "x", "z", "fx", "fz"]))
+    store, _ = parse(dem)
+    assert np.isfinite(store[:, :2]).all() and np.isnan(store[:, 2:]).all()
+    changed(dem, lambda manifest: manifest.update(columns=["id", "x", "y", "vx", "vz"]))
+    with pytest.raises(UserError, match="the dumps hold id x y vx vz, x and z are needed"):
+        parse(dem)
+
+
+@pytest.mark.parametrize(
+    ("change", "message"),
+    [
+        (lambda m: m["frames"].pop(3), "frame 3 .* follows frame 2 .*rerun segment 1"),
+        (lambda m: m["frames"].insert(6, m["frames"][6]), "frame 7 .* follows frame 6 .*rerun segment 2"),
+        (lambda m: m.update(frames=m["frames"][:1]), "lists 1 frames, at least 2 are needed"),
+        (lambda m: m.pop("frame_interval_s"), "no readable manifest"),
+    ],
+)
+def test_a_manifest_that_is_not_in_order_is_refused(bed, change, message):
+    changed(bed[1], change)
+    with pytest.raises(UserError, match=message):
+        read_manifest(bed[1])
+
+
+def test_a_frame_of_another_step_or_with_a_particle_less_leaves_nothing(bed, tmp_path):
+    _, dem = bed
+    changed(dem, lambda manifest: manifest["frames"][5].update(step=7000))
+    with pytest.raises(UserError, match="frame 5 of .*its step is 6250, 7000 expected; rerun segment 2"):
+        parse(dem)
+    changed(dem, lambda manifest: manifest.update(number=21))
+    with pytest.raises(UserError, match="frame 0 of .*it holds 20 particles, 21 expected"):
+        parse(dem)
+    assert not list(tmp_path.glob("trajectory*"))
+
+
+def test_a_store_of_another_shape_is_refused(bed):
+    _, dem = bed
+    parse(dem)
+    np.save(dem.parent / "trajectory.npy", np.zeros((3, 4, 20), np.float32))
+    with pytest.raises(UserError, match=r"has the shape \(3, 4, 20\), \(9, 4, 20\) expected"):
+        open_trajectory(dem.parent / "trajectory.npy", dem.parent / "trajectory.json")
+
+
+def test_the_remedy_names_the_segment_or_the_run():
+    assert f"delete dem/{STAMP}/segment_0020, the" in remedy(f"dem/{STAMP}/segment_0020/frame_5.bin")
+    assert remedy("frame_5.bin") == "delete the run's folder and run again"
