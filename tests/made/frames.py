@@ -6,8 +6,7 @@ import numpy as np
 from bedchain.trajectory.frames import Frames
 from bedchain.trajectory.grid import Grid
 from bedchain.trajectory.realisations import Realisation
-
-INTERVAL_S = 0.025
+from bedchain.trajectory.synthetic import INTERVAL_S, persistent_walk
 
 
 def framed(cells: np.ndarray, grid: Grid) -> Frames:
@@ -41,46 +40,11 @@ def stirred(seed: int = 0, n_frames: int = 60, n_particles: int = 400) -> tuple[
     return Frames(np.arange(n_frames) * 0.025, x, z, grid.cell_of(x, z)), grid
 
 
-def free_walk(
-    velocity: np.ndarray, n_frames: int, memory_s: float, speed_m_s: float, rng: np.random.Generator
-) -> tuple[np.ndarray, np.ndarray]:
-    """Positions along one axis, from 0 on, and velocities that forget themselves exponentially.
-
-    Ornstein and Uhlenbeck 1930: both are exact at the frames, 0.025 s apart; (n_frames, n_particles) each.
-    """
-    keep = np.exp(-INTERVAL_S / memory_s)
-    # A step's change of velocity and displacement are two correlated normal numbers.
-    a, b = INTERVAL_S / memory_s, 1 - keep
-    both = np.array(
-        [[1 - keep**2, memory_s * b**2], [memory_s * b**2, memory_s**2 * (2 * a - 4 * b + 1 - keep**2)]]
-    )
-    root = np.linalg.cholesky(both) * speed_m_s
-    x, v, frames = np.zeros(velocity.size), velocity, np.empty((2, n_frames, velocity.size))
-    for frame in range(n_frames):
-        frames[:, frame] = x, v
-        kick = root @ rng.normal(size=(2, velocity.size))
-        x, v = x + memory_s * b * v + kick[1], keep * v + kick[0]
-    return frames[0], frames[1]
-
-
-def folded(x: np.ndarray, v: np.ndarray, upper: float) -> tuple[np.ndarray, np.ndarray]:
-    """Walkers between walls at 0 and ``upper``: the position mirrored back, the velocity turned."""
-    phase = np.mod(x, 2 * upper)
-    back = phase > upper
-    return np.where(back, 2 * upper - phase, phase), np.where(back, -v, v)
-
-
 def kept_velocity(
     n_particles: int, n_frames: int, width_m: float, memory_s: float, speed_m_s: float, seed: int
 ) -> Frames:
-    """Particles of `free_walk` in a square box whose walls turn them back."""
-    rng, axes = np.random.default_rng(seed), []
-    for _ in range(2):
-        v, start = rng.normal(0, speed_m_s, n_particles), rng.uniform(0, width_m, n_particles)
-        x, v = free_walk(v, n_frames, memory_s, speed_m_s, rng)
-        axes.append(folded(start + x, v, width_m))
-    (x, vx), (z, vz) = axes
-    return Frames(np.arange(n_frames) * INTERVAL_S, x, z, np.zeros(x.shape, np.int32), vx, vz)
+    """Walkers of the library in a square box."""
+    return persistent_walk(n_frames, n_particles, (width_m, width_m), memory_s, speed_m_s, seed)
 
 
 def walkers(intervals: int, n_particles: int = 200, seed: int = 5) -> Realisation:
@@ -90,14 +54,8 @@ def walkers(intervals: int, n_particles: int = 200, seed: int = 5) -> Realisatio
     return Realisation(f"walkers {seed}", values, frames.times_s, 0.1, 0.1)
 
 
-def on_grid(frames: Frames, grid: Grid) -> Frames:
-    """The same frames with cells of another grid."""
-    cells = grid.cell_of(frames.x_m, frames.z_m)
-    return Frames(frames.times_s, frames.x_m, frames.z_m, cells, frames.vx_m_s, frames.vz_m_s)
-
-
 def squared_displacement(t_s: np.ndarray, memory_s: float, speed_m_s: float) -> np.ndarray:
-    """Mean square of `free_walk` [m2]."""
+    """Mean square of `synthetic.free_walk` [m2]."""
     return 2 * (speed_m_s * memory_s) ** 2 * (t_s / memory_s - 1 + np.exp(-t_s / memory_s))
 
 

@@ -8,7 +8,8 @@ from bedchain.measures.batch import total_variation
 from bedchain.measures.mixing import sides
 from bedchain.trajectory.frames import Frames
 from bedchain.trajectory.grid import Grid
-from made.frames import half_remaining, kept_velocity, on_grid, squared_displacement, stirred
+from bedchain.trajectory.synthetic import on_grid
+from made.frames import half_remaining, kept_velocity, squared_displacement, stirred
 
 WIDTH, MEMORY, SPEED = 0.1, 0.15, 0.1
 INTERVAL = 0.025

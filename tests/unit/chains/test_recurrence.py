@@ -7,7 +7,8 @@ from bedchain.errors import DataError
 from bedchain.measures.mixing import remaining_from_positions, sides
 from bedchain.trajectory.frames import Frames
 from bedchain.trajectory.grid import Grid
-from made.frames import half_remaining, kept_velocity, on_grid, squared_displacement, stirred
+from bedchain.trajectory.synthetic import on_grid
+from made.frames import half_remaining, kept_velocity, squared_displacement, stirred
 
 INTERVAL = 0.025
 ORDERS = ("recurrence", "shuffled", "replay")

@@ -11,7 +11,8 @@ from bedchain.errors import DataError
 from bedchain.measures.mixing import sides
 from bedchain.trajectory.frames import Frames
 from bedchain.trajectory.grid import Grid
-from made.frames import framed, half_remaining, kept_velocity, on_grid, squared_displacement, stirred
+from bedchain.trajectory.synthetic import on_grid
+from made.frames import framed, half_remaining, kept_velocity, squared_displacement, stirred
 
 ROUND_OFF = 1e-12
 # Mean-square displacement of the persistent walk (rho = 0.8) after 50 steps, in cells squared.

@@ -5,7 +5,8 @@ import pytest
 from bedchain.errors import DataError
 from bedchain.measures.lagrangian import Places, corrected, dispersion_error, in_cells, statistics
 from bedchain.trajectory.grid import Grid
-from made.frames import INTERVAL_S, free_walk
+from bedchain.trajectory.synthetic import free_walk
+from made.frames import INTERVAL_S
 from made.frames import squared_displacement as squared
 
 MEMORY_S, SPEED, WALKERS = 0.15, 0.2, 20_000
