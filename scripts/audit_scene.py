@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""What physics a case needs and what is built of it, from the case alone: results/<case>/audit.csv."""
+"""Physics that a case needs and what is built of it, from the case alone: results/<case>/audit.csv."""
 
 from pathlib import Path
 

@@ -253,7 +253,7 @@ def main() -> None:
     parser.add_argument(
         "--output", type=Path, default=Path("results/benchmark_core.csv"), help="csv to write"
     )
-    parser.add_argument("--folder", type=Path, help="where the made-up trajectories go meanwhile (8 GB)")
+    parser.add_argument("--folder", type=Path, help="where the synthetic trajectories go meanwhile (8 GB)")
     one = parser.add_argument_group("one method, as the command runs each in a fresh process")
     one.add_argument("--method", choices=METHODS, help="method to measure")
     one.add_argument("--trajectory", type=Path, help="cells, .npy of (frames, particles)")

@@ -5,7 +5,7 @@ usage: python scripts/compare_peers.py
        python scripts/compare_peers.py --beds short --repeats 1 --duration 0.01
 
 Each finished run is kept in results/peers/<bed>/runs: a study that was stopped goes on, and one with more
-repeats makes only what is new. A code that is not installed is told and left out (envs/apt_peers.txt). It
+repeats makes only what is new. A code that is not installed is named and left out (envs/apt_peers.txt). It
 prints the tables in markdown, and ends with code 1 where a code failed.
 """
 

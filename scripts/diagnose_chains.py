@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""What the chains imply and how far they hold: results/<case>/diagnostics.csv."""
+"""Diagnostics of the chains, what they imply and how far they hold: results/<case>/diagnostics.csv."""
 
 from collections.abc import Iterator, Sequence
 from functools import partial

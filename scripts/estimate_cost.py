@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""What a case will cost, and after a run what it did cost: results/<case>/estimate.csv, estimate.txt."""
+"""Estimated cost of a case, and after a run its actual cost: results/<case>/estimate.csv, estimate.txt."""
 
 import os
 from collections.abc import Iterable

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""How long particles remember which way they went, and how far they get: DEM and all models."""
+"""Velocity autocorrelation and mean-square displacement of particles: DEM and all models."""
 
 from pathlib import Path
 

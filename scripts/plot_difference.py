@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Where the batch of Figs. 3 and 4 is more by the static chain, and where more by the dynamic one."""
+"""Difference map of the batch of Figs. 3 and 4: static chain less dynamic chain."""
 
 from pathlib import Path
 

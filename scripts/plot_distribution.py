@@ -69,7 +69,7 @@ def plot_distribution(
         [100 * total_variation(*pair) for pair in zip(shares, expected, strict=True)]
         for shares in (observed, drawn)
     )
-    notes = [f"differs {one:.0f} %\n(dice {two:.0f} %)" for one, two in zip(by_dem, by_dice, strict=True)]
+    notes = [f"differs {one:.0f} %\n(chance {two:.0f} %)" for one, two in zip(by_dem, by_dice, strict=True)]
     LOG.info(
         "total variation of the %s chain from the DEM at %s s: %s",
         model,

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Is the bed steady? Drifts over learning and comparison, with their intervals: stationarity.csv, figure."""
+"""Drifts of the bed over learning and comparison, with their intervals: stationarity.csv and a figure."""
 
 from pathlib import Path
 

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""What accuracy costs with chains: error in noise floors over cost, and over each setting alone."""
+"""Trade-off of the chains: error in noise floors over cost, and over each setting alone."""
 
 from pathlib import Path
 

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""What each choice in simulating a bed changes, in noise floors, and what it costs."""
+"""Change and cost of each choice in simulating a bed, the change in noise floors."""
 
 from pathlib import Path
 from typing import Any

@@ -29,7 +29,7 @@ def run_chain(
     bed: BedFiles, transitions: Path, chain: Path,
     learning: Window, comparison: Window, splits: Splits, batch: Batch, settings: ModelSettings,
 ) -> None:  # fmt: skip
-    """Advance the marked groups of Fig. 5 and the batch of Figs. 3 and 4, by expectation and by dice.
+    """Advance the marked groups of Fig. 5 and the batch of Figs. 3 and 4, by expectation and by Monte Carlo.
 
     Parameters
     ----------

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""What each model costs, measured: results/<case>/timing.csv. The DEM's own time comes from its manifest."""
+"""Measured cost of each model: results/<case>/timing.csv. The DEM's own time comes from its manifest."""
 
 import time
 from collections.abc import Callable

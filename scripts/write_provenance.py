@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""What a case's results rest on: results/<case>/provenance.json."""
+"""Provenance of a case's results: results/<case>/provenance.json."""
 
 import hashlib
 import json

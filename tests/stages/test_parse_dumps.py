@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Frames of a run into one trajectory, and what a user is told where one of them is bad."""
+"""Frames of a run into one trajectory, and the message where one of them is bad."""
 
 import json
 import logging

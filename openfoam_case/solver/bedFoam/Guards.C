@@ -122,7 +122,7 @@ void bedFoam::Guards::checkOverlap(const Liggghts& dem)
 
 void bedFoam::Guards::checkParticles(const Liggghts& dem)
 {
-    // A burst of overlaps throws particles out: it is the cause that is told
+    // A burst of overlaps throws particles out: it is the cause that is reported
     checkOverlap(dem);
     checkNumber(dem);
 }
