@@ -65,11 +65,11 @@ def plot_distribution(
         )
     observed = observed_shares(store, moments, start_s, batch_height_m)
     # the batch is finite: as many particles drawn from the chain itself differ from its expectation too
-    by_dem, by_dice = (
+    by_dem, by_chance = (
         [100 * total_variation(*pair) for pair in zip(shares, expected, strict=True)]
         for shares in (observed, drawn)
     )
-    notes = [f"differs {one:.0f} %\n(chance {two:.0f} %)" for one, two in zip(by_dem, by_dice, strict=True)]
+    notes = [f"differs {one:.0f} %\n(chance {two:.0f} %)" for one, two in zip(by_dem, by_chance, strict=True)]
     LOG.info(
         "total variation of the %s chain from the DEM at %s s: %s",
         model,

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Trade-off between accuracy and cost, of chains and simulated beds: results/<case>/tradeoff.csv and presets.yaml.
+"""Accuracy against cost, of chains and simulated beds: results/<case>/tradeoff.csv and presets.yaml.
 
 usage: python scripts/study_tradeoff.py cases/short/case.yaml results/short --variants base drag_koch_hill
 

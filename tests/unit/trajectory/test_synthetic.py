@@ -36,6 +36,6 @@ def test_walls_turn_walkers_back():
     frames = persistent_walk(200, 300, (0.04, 0.06), 0.1, 0.5, seed=3)
     for places, speeds, size in ((frames.x_m, frames.vx_m_s, 0.04), (frames.z_m, frames.vz_m_s, 0.06)):
         assert places.min() >= 0 and places.max() <= size
-        # evenly spread and as fast as without walls, to three standard errors of 300 walkers in some 50 memories
+        # spread evenly and as fast as without walls: three standard errors of 300 walkers, 50 memories each
         assert places.mean() / size == pytest.approx(0.5, abs=0.01)
         assert speeds.std() == pytest.approx(0.5, rel=0.02)
