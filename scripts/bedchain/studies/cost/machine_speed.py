@@ -19,6 +19,7 @@ from numpy.typing import NDArray
 
 from bedchain.case.schema import Case
 from bedchain.dem.segments import read_parameters
+from bedchain.files import path_inside
 from bedchain.physics.whole_numbers import ratio
 
 SOLVERS = ("dem", "exchange", "gas")
@@ -183,7 +184,7 @@ def simulated_here(dem: Path) -> dict[str, Any] | None:
     """Manifest of a run whose segments are here; None for a run from an archive, timed elsewhere."""
     try:
         manifest = json.loads(dem.read_text(encoding="utf-8"))
-        here = (dem.parent / manifest["segments"][0]["folder"]).exists()
+        here = path_inside(dem.parent, manifest["segments"][0]["folder"]).exists()
     except (OSError, ValueError, KeyError, IndexError):
         return None
     return dict(manifest) if here else None
