@@ -49,6 +49,16 @@ def cells_of_the_discussion_hold_particles(sizes: list[float], diameter: float) 
             yield "discussion.cell_sizes_m", wrong, f"take at least {diameter:g}"
 
 
+@reads("chain.models", "chain.recurrence.coarse_m", "particles.diameter_m")
+def cells_of_the_recurrence_hold_particles(
+    models: list[str], size: float, diameter: float
+) -> Iterator[Finding]:
+    """Refuse cells of the recurrence chain below a particle diameter: frames would be compared for weeks."""
+    if "recurrence" in models and size < diameter:
+        wrong = f"{size:g} m is smaller than a particle ({diameter:g} m)"
+        yield "chain.recurrence.coarse_m", wrong, f"take at least {diameter:g}"
+
+
 @reads("comparison.repeats", "comparison.start_s", "time.segment_s", "gas.model")
 def repeats_start_at_a_segment(
     repeats: int, start: float, segment: float, gas_model: str

@@ -30,8 +30,6 @@ EXCHANGED = 9.4e6  # particles mapped to the gas cells and back per second [1/s]
 GAS_STEP_S = 1.7e-3  # of a step of the gas with few cells [s]
 GAS_CELL_S = 2.3e-6  # added for each cell of a rank [s]
 SEGMENT_START_S = 0.8  # of a segment: start of the programs, mesh, restart and frames [s]
-# Memory of the coupled solver [MB]: mpirun and Python, each rank, each particle
-RUN_MB, RANK_MB, PARTICLE_MB = 96.0, 87.0, 1.5e-3
 
 
 class Job(NamedTuple):
