@@ -9,6 +9,7 @@ from bedchain.case import (  # noqa: F401
     gas_checks,
     scene_checks,
     size_checks,
+    stage_checks,
 )
 from bedchain.case.check_registry import CHECKS
 from bedchain.errors import Problem

@@ -13,6 +13,9 @@ from made import ROOT
 
 NAMES = {
     "a_box_has_gas_and_a_drum_has_none", "a_revolution_has_frames", "cells_can_be_counted",
+    "colour_maps_exist", "colours_exist", "earlier_velocities_are_in_the_window",
+    "jumps_of_the_recurrence_have_targets", "lags_fill_the_comparison", "lags_of_the_discussion_fit",
+    "moments_are_steps",
     "cells_hold_particles", "cells_of_the_recurrence_hold_particles",
     "cells_of_the_discussion_hold_particles", "drum_is_dumped_in_binary_and_once",
     "drum_is_round_and_flat", "gas_cells_fit", "gas_cells_resolve_the_bed", "gas_is_light",
