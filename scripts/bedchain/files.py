@@ -74,6 +74,53 @@ def map_array(path: Path | str, name: str) -> np.memmap:
     return np.memmap(path, dtype, "r", offset, shape, "F" if fortran else "C")
 
 
+def path_inside(folder: Path, name: Any) -> Path:
+    """Path of a file or folder that a manifest names, which must be within the manifest's folder.
+
+    Parameters
+    ----------
+    folder : Path
+        Folder of the manifest; it may itself be a link.
+    name : str
+        Relative path, as the manifest has it; it need not exist.
+
+    Returns
+    -------
+    Path
+
+    Raises
+    ------
+    DataError
+        The name is no relative path, leads out of the folder (by ``..`` or a link), or is a special file.
+    """
+    if not isinstance(name, str) or not name or "\0" in name:
+        raise DataError(f"{folder}: {name!r} is no name of a file; make the manifest again")
+    relative = Path(name)
+    if relative.is_absolute() or ".." in relative.parts:
+        raise DataError(f"{folder}: {name} is not within this folder; make the manifest again")
+    path = folder / relative
+    try:
+        outside = not path.resolve().is_relative_to(folder.resolve())
+        refuse_special_file(path)
+    except (OSError, RuntimeError) as error:
+        raise DataError(f"{path} cannot be reached ({error}); make the manifest again") from error
+    if outside:
+        raise DataError(f"{path} is a link to {path.resolve()}, out of {folder}; put the file itself there")
+    return path
+
+
+def refuse_special_file(path: Path) -> None:
+    """Refuse a pipe, socket or device, whose reading may never end; a missing file passes.
+
+    Raises
+    ------
+    DataError
+        It is one.
+    """
+    if path.exists() and not (path.is_file() or path.is_dir()):
+        raise DataError(f"{path} is a special file (pipe, socket or device), not data; remove it")
+
+
 CSV_DIGITS = "%.8g"
 
 

@@ -19,13 +19,7 @@ BED_KEYS = ("bed.width_m", "bed.height_m", "bed.thickness_m", "bed.layers")
 @reads("seed")
 def seed_is_prime(seed: int) -> Iterator[Finding]:
     """Refuse a seed that LIGGGHTS does not accept."""
-    if seed > 2**31 - 1:
-        yield (
-            "seed",
-            f"{seed} does not fit into 31 bits",
-            "take a prime of 10007 to 2147483647, such as 15485863",
-        )
-    elif not is_prime(seed):
+    if not is_prime(seed):
         near = next(number for number in range(seed, 2 * seed) if is_prime(number))
         yield "seed", f"{seed} is not prime, and LIGGGHTS takes only primes above 10000", f"take {near}"
 

@@ -4,7 +4,7 @@
 from collections.abc import Iterator
 
 from bedchain.case.check_registry import Finding, reads
-from bedchain.physics.whole_numbers import is_multiple, nearest_multiple, ratio
+from bedchain.physics.whole_numbers import is_multiple, nearest_multiple, ratio, span
 
 
 @reads(
@@ -49,6 +49,16 @@ def cells_of_the_discussion_hold_particles(sizes: list[float], diameter: float) 
             yield "discussion.cell_sizes_m", wrong, f"take at least {diameter:g}"
 
 
+@reads("chain.models", "chain.recurrence.coarse_m", "particles.diameter_m")
+def cells_of_the_recurrence_hold_particles(
+    models: list[str], size: float, diameter: float
+) -> Iterator[Finding]:
+    """Refuse cells of the recurrence chain below a particle diameter: frames would be compared for weeks."""
+    if "recurrence" in models and size < diameter:
+        wrong = f"{size:g} m is smaller than a particle ({diameter:g} m)"
+        yield "chain.recurrence.coarse_m", wrong, f"take at least {diameter:g}"
+
+
 @reads("comparison.repeats", "comparison.start_s", "time.segment_s", "gas.model")
 def repeats_start_at_a_segment(
     repeats: int, start: float, segment: float, gas_model: str
@@ -80,9 +90,9 @@ def lag_fits(
     if not is_multiple(lag, frame):
         wrong = f"{lag:g} s is no multiple of time.frame_interval_s ({frame:g} s)"
         yield "chain.lag_s", wrong, f"take {nearest_multiple(lag, frame):.10g}"
-    shorter = min(learn_end - learn_start, compare_end - compare_start)
-    if 0 < shorter < 2 * lag:
-        wrong = f"{lag:g} s: the shorter window ({shorter:g} s) holds less than two lags"
+    shorter = min(span(learn_start, learn_end), span(compare_start, compare_end))
+    if 0 < shorter < 2 * ratio(lag, 1.0):
+        wrong = f"{lag:g} s: the shorter window ({float(shorter):g} s) holds less than two lags"
         yield "chain.lag_s", wrong, "take a shorter lag or longer windows; the dynamic chain needs two lags"
 
 
@@ -122,6 +132,6 @@ def moments_are_frames(moments: list[float], frame: float, start: float, end: fl
         if not is_multiple(moment, frame):
             wrong = f"{moment:g} s is no multiple of time.frame_interval_s ({frame:g} s)"
             yield "figures.moments_s", wrong, f"take {nearest_multiple(moment, frame):.10g}"
-        if 0 < end - start < moment:
+        if 0 < span(start, end) < ratio(moment, 1.0):
             wrong = f"{moment:g} s is after the end of the comparison, which lasts {end - start:g} s"
             yield "figures.moments_s", wrong, "leave it out, or take a later comparison.end_s"

@@ -3,7 +3,14 @@
 
 from typing import Any
 
-from bedchain.case import bed_checks, chain_checks, gas_checks, scene_checks  # noqa: F401
+from bedchain.case import (  # noqa: F401
+    bed_checks,
+    chain_checks,
+    gas_checks,
+    scene_checks,
+    size_checks,
+    stage_checks,
+)
 from bedchain.case.check_registry import CHECKS
 from bedchain.errors import Problem
 
@@ -20,10 +27,7 @@ def physical_problems(case: dict[str, Any], broken: set[str], lines: dict[str, i
     lines : dict of str to int
         Dotted key -> line in the file.
     """
-    values = {key: value for key, value in case.items() if not isinstance(value, dict)}
-    for section, group in case.items():
-        if isinstance(group, dict):
-            values |= {f"{section}.{key}": value for key, value in group.items()}
+    values = _by_dotted_key(case)
     refused = {key.split("[")[0] for key in broken}
     problems = []
     for keys, check in CHECKS:
@@ -31,3 +35,11 @@ def physical_problems(case: dict[str, Any], broken: set[str], lines: dict[str, i
             findings = check(*(values[key] for key in keys))
             problems += [Problem(key, wrong, remedy, lines.get(key)) for key, wrong, remedy in findings]
     return problems
+
+
+def _by_dotted_key(group: dict[str, Any], path: str = "") -> dict[str, Any]:
+    values: dict[str, Any] = {}
+    for name, value in group.items():
+        key = f"{path}.{name}" if path else name
+        values |= _by_dotted_key(value, key) if isinstance(value, dict) else {key: value}
+    return values

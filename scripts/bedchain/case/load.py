@@ -18,6 +18,7 @@ from bedchain.case.strict_yaml import Lines, read_yaml
 from bedchain.errors import CaseError, Problem
 
 LOG = logging.getLogger(__name__)
+MOST_LETTERS = 60  # of a value in a message
 NEW_NAMES = {"fidelity": "preset"}  # keys of a case and words of --config that were renamed
 
 
@@ -94,7 +95,7 @@ def _with_defaults(data: Any, schema: Schema) -> Any:
     if schema.get("type") == "integer" and isinstance(data, float) and data.is_integer():
         return int(data)
     if schema.get("type") == "number" and isinstance(data, int) and not isinstance(data, bool):
-        return float(data)
+        return float(str(data))  # infinite beyond 1e308, which the schema refuses
     if schema.get("type") != "object" or not isinstance(data, dict):
         return data
     filled = dict(data)
@@ -165,7 +166,12 @@ def _wrong_value(error: ValidationError) -> tuple[str, str]:
     meaning = f" ({part['description']})" if "description" in part else ""
     if not rule:
         return error.message, f"see the schema{meaning}"
-    return f"{error.instance!r} is not {rule}", f"give a value {rule}{meaning}"
+    return f"{_short(error.instance)} is not {rule}", f"give a value {rule}{meaning}"
+
+
+def _short(value: Any) -> str:
+    text = repr(value)
+    return text if len(text) <= MOST_LETTERS else f"{text[:MOST_LETTERS]}... ({len(text)} characters)"
 
 
 def _join(path: str, name: str) -> str:

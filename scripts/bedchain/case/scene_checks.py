@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Checks of the scene: a box with gas or a drum without; and the keys of a case that its scene uses."""
 
+import math
 from collections.abc import Iterator
 from typing import Any
 
@@ -49,7 +50,16 @@ def drum_sites(diameter: float, particle: float) -> int:
     """
     spacing = START_SPACING_DIAMETERS * particle
     along = (np.arange(int(diameter / spacing) + 1) + 0.5) * spacing - diameter / 2
-    return int(np.count_nonzero(np.hypot(*np.meshgrid(along, along)) <= (diameter - particle) / 2))
+    reach = (diameter - particle) / 2
+    half_chords = np.sqrt(reach**2 - along[np.abs(along) <= reach] ** 2)
+    ends = np.searchsorted(along, half_chords, "right") - np.searchsorted(along, -half_chords, "left")
+    return int(ends.sum())
+
+
+def surely_fit(number: int, diameter: float, particle: float) -> bool:
+    """Whether particles fit into the square within a drum, so that its sites need not be counted."""
+    side = (diameter - particle) / math.sqrt(2) / (START_SPACING_DIAMETERS * particle) - 1
+    return side > 0 and number <= side**2
 
 
 @reads("scene")
@@ -84,7 +94,9 @@ def particles_fit_into_the_drum(
     revolution: float, width: float, diameter: float, number: int
 ) -> Iterator[Finding]:
     """Refuse more particles than the lattice at the start has sites."""
-    if diameter <= width and number > (sites := drum_sites(width, diameter)):
+    if diameter > width or surely_fit(number, width, diameter):
+        return
+    if number > (sites := drum_sites(width, diameter)):
         wrong = f"{number} start on a lattice that has {sites} sites in a drum of {width:g} m"
         yield (
             "particles.number",

@@ -21,7 +21,7 @@ MARGIN = 1.1  # file system blocks, logs, figures
 
 
 def run_bytes(case: Case) -> int:
-    """Bytes that a case needs on disk: frames, trajectory, cells, and a restart of each segment.
+    """Bytes that a case and its repeats need on disk: frames, trajectory, cells, a restart of each segment.
 
     Parameters
     ----------
@@ -29,13 +29,15 @@ def run_bytes(case: Case) -> int:
         A checked case, of `case.load.load_case`.
     """
     time, bed = case["time"], case["bed"]
-    frames = int(ratio(time["end_s"], time["frame_interval_s"])) + 1
+    window_s = case["comparison"]["end_s"] - case["comparison"]["start_s"]
+    spans_s = [time["end_s"], *[window_s] * case["comparison"]["repeats"]]
+    frames = sum(int(ratio(span_s, time["frame_interval_s"])) + 1 for span_s in spans_s)
     number = case["particles"]["number"]
     cell = case["gas"]["cell_size_m"]
     depth_cells = max(1.0, bed["thickness_m"] / cell) if bed["layers"] == "many" else 1.0
     gas_cells = bed["width_m"] * bed["height_m"] / cell**2 * depth_cells
     frame_bytes = number * (DUMP_COLUMNS[bed["layers"]] * DOUBLE_BYTES + TRAJECTORY_BYTES + CELL_BYTES)
-    segments = math.ceil(ratio(time["end_s"], time["segment_s"])) + 1
+    segments = sum(math.ceil(ratio(span_s, time["segment_s"])) + 1 for span_s in spans_s)
     restart_bytes = number * RESTART_BYTES_PARTICLE + gas_cells * RESTART_BYTES_GAS_CELL
     return int(MARGIN * (frames * frame_bytes + segments * restart_bytes))
 

@@ -9,7 +9,7 @@ import numpy as np
 import pyvista
 
 from bedchain.errors import UserError
-from bedchain.files import read_arrays
+from bedchain.files import path_inside, read_arrays
 
 
 class GasField(NamedTuple):
@@ -53,7 +53,7 @@ def gas_near(manifest: dict[str, Any], folder: Path, name: str, time_s: float) -
     GasField
     """
     if "gas" in manifest:
-        return archived_gas(folder / manifest["gas"], name, time_s)
+        return archived_gas(path_inside(folder, manifest["gas"]), name, time_s)
     case, _ = nearest_gas(manifest, folder, name, time_s)
     return read_gas_field(case, name)
 
@@ -108,13 +108,13 @@ def nearest_gas(manifest: dict[str, Any], folder: Path, name: str, time_s: float
     Raises
     ------
     UserError
-        No segment has the field.
+        No segment has the field, or a folder of the manifest is out of the run's folder.
     """
-    candidates = [
-        (abs(segment["end_s"] - time_s), folder / segment["folder"] / "gas", float(segment["end_s"]))
+    cases = [
+        (path_inside(folder, f"{segment['folder']}/gas"), float(segment["end_s"]))
         for segment in manifest["segments"]
-        if any((folder / segment["folder"] / "gas").glob(f"**/{name}"))
     ]
+    candidates = [(abs(end_s - time_s), case, end_s) for case, end_s in cases if any(case.glob(f"**/{name}"))]
     if not candidates:
         raise UserError(f"{folder}: no segment has the gas field {name}; run run_dem again")
     _, case, end_s = min(candidates)
@@ -138,8 +138,10 @@ def read_gas_field(case: Path, name: str) -> GasField:
     Raises
     ------
     UserError
-        The case has no such field.
+        The case has no such field, or holds a special file or a link that leads out of it.
     """
+    for part in case.rglob("*"):  # the reader waits for ever at a pipe
+        path_inside(case, str(part.relative_to(case)))
     # the reader needs a file beside the folders of the case, which must not change: links to them serve
     with tempfile.TemporaryDirectory() as temporary:
         for part in case.iterdir():

@@ -7,11 +7,12 @@ from bedchain.case.load import load_case
 from bedchain.case.parameters import fluidization_line, liggghts_text, openfoam_text, solver_parameters
 from bedchain.case.schema import load_schema
 from bedchain.dem.disk import require_disk, run_bytes
+from bedchain.dem.memory import require_memory
 from bedchain.files import write_text
 
 
 def write_parameters(case_file: Path, folder: Path) -> None:
-    """Check a case and the disk, then write both parameter files.
+    """Check a case, the memory and the disk, then write both parameter files.
 
     Parameters
     ----------
@@ -23,9 +24,10 @@ def write_parameters(case_file: Path, folder: Path) -> None:
     Raises
     ------
     UserError
-        Where the case cannot be run or the disk is too full; nothing is written then.
+        Where the case cannot be run, or memory or disk do not hold it; nothing is written then.
     """
     case = load_case(case_file)
+    require_memory(case)
     parameters = solver_parameters(case, load_schema())
     folder.mkdir(parents=True, exist_ok=True)
     require_disk(folder, run_bytes(case))

@@ -13,6 +13,7 @@ from dataclasses import asdict, dataclass
 from pathlib import Path
 
 from bedchain.errors import UserError
+from bedchain.files import path_inside
 
 STAMP_DIGITS = 12  # of sha256: two sets of inputs never share a folder
 SETTLED = "settled"
@@ -121,13 +122,21 @@ def frame_columns(parameters: dict[str, float | str]) -> list[str]:
 
 
 def finished_segments(folder: Path) -> list[Segment]:
-    """Finished segments of a run, in order, up to the first missing one."""
+    """Finished segments of a run, in order, up to the first missing one.
+
+    Raises
+    ------
+    DataError
+        A record names a folder outside the run's.
+    """
     segments: list[Segment] = []
     while True:
         record = folder / f"segment_{len(segments) + 1:04d}" / RECORD
         if not record.exists():
             return segments
-        segments.append(Segment(**json.loads(record.read_text(encoding="utf-8"))))
+        segment = Segment(**json.loads(record.read_text(encoding="utf-8")))
+        path_inside(folder, segment.folder)
+        segments.append(segment)
 
 
 def write_record(folder: Path, segment: Segment) -> None:

@@ -10,6 +10,11 @@ def ratio(length: float, unit: float) -> Fraction:
     return Fraction(repr(length)) / Fraction(repr(unit))
 
 
+def span(start: float, end: float) -> Fraction:
+    """``end - start`` of the decimal numbers, exact (0.15 - 0.1 is 0.05, in floating point less)."""
+    return ratio(end, 1.0) - ratio(start, 1.0)
+
+
 def is_multiple(length: float, unit: float) -> bool:
     """Whether `length` is a whole number of `unit`, at least one."""
     steps = ratio(length, unit)

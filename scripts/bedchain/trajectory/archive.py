@@ -8,6 +8,7 @@ from typing import Any
 
 from bedchain.case.schema import Case, Schema, case_value, schema_keys
 from bedchain.errors import UserError
+from bedchain.files import path_inside, refuse_special_file
 from bedchain.physics.whole_numbers import is_multiple, ratio
 
 PROVENANCE = "provenance.json"
@@ -63,6 +64,7 @@ def read_provenance(folder: Path) -> dict[str, Any]:
     UserError
         It is missing or cannot be read.
     """
+    refuse_special_file(folder / PROVENANCE)
     try:
         provenance = json.loads((folder / PROVENANCE).read_text(encoding="utf-8"))
         for key in ("solver_keys", "start_s", "end_s", "history_s", "files"):
@@ -176,10 +178,10 @@ def check_files(folder: Path, provenance: dict[str, Any]) -> None:
     Raises
     ------
     UserError
-        A file is missing or was changed; the first is named.
+        A file is missing, was changed, or is not within the folder; the first is named.
     """
     for name, expected in provenance["files"].items():
-        file = folder / name
+        file = path_inside(folder, name)
         remedy = f"fetch it again (git checkout -- {file}), {SIMULATE}"
         if not file.exists():
             raise UserError(f"{file} is missing: {remedy}")

@@ -13,7 +13,7 @@ import numpy as np
 from tqdm import tqdm
 
 from bedchain.errors import UserError
-from bedchain.files import atomic_file, write_npy_header, write_text
+from bedchain.files import atomic_file, path_inside, refuse_special_file, write_npy_header, write_text
 from bedchain.trajectory.dumps import frame_of, listed, read_dump
 
 LOG = logging.getLogger(__name__)
@@ -60,17 +60,24 @@ def read_manifest(path: Path) -> dict[str, Any]:
     Raises
     ------
     UserError
-        The manifest is unreadable, empty, or a frame is missing, doubled or out of order.
+        The manifest is unreadable, empty, or a frame is missing, doubled or out of order; or a file or folder
+        that it names is a special file or out of its folder.
     """
+    refuse_special_file(path)
     try:
         manifest = json.loads(path.read_text())
         steps = np.array([frame["step"] for frame in manifest["frames"]], np.int64)
         times = np.array([frame["time_s"] for frame in manifest["frames"]], float)
         interval = float(manifest["frame_interval_s"])
+        names = [frame["file"] for frame in manifest["frames"]]
+        names += [segment["folder"] for segment in manifest.get("segments", [])]
+        names += [manifest["gas"]] if "gas" in manifest else []
     except (OSError, ValueError, KeyError, TypeError) as error:
         raise UserError(
             f"{path}: no readable manifest of a DEM run ({error!r}); run run_dem again"
         ) from error
+    for name in dict.fromkeys(names):
+        path_inside(path.parent, name)
     if steps.size < 2:
         raise UserError(f"{path}: lists {steps.size} frames, at least 2 are needed; simulate longer")
     uneven = np.flatnonzero(np.abs(np.diff(times) - interval) > TIME_TOLERANCE * interval * steps.size)

@@ -25,7 +25,7 @@ MISTAKES = [
     ),
     ("seed: 15485863", "seed: 15485864", "seed", "15485867"),
     ("seed: 15485863", "seed: 9973", "seed", "above 10000"),
-    ("seed: 15485863", "seed: 4294967311", "seed", "31 bits"),
+    ("seed: 15485863", "seed: 4294967311", "seed", "at most 2147483647"),
     (END, "  dem_step_s: 5e-5\n" + END, "time.dem_step_s", "allow_unstable_step"),
     (END, "  frame_interval_s: 0.02501\n" + END, "time.frame_interval_s", "multiple"),
     (END, "  segment_s: 0.51\n" + END, "time.segment_s", "take 0.5"),

@@ -3,6 +3,7 @@
 
 import pytest
 
+from bedchain.case.chain_checks import lag_fits, moments_are_frames
 from made.case_text import END, assert_refused, changed_case
 
 MISTAKES = [
@@ -21,3 +22,9 @@ MISTAKES = [
 @pytest.mark.parametrize(("old", "new", "key", "message"), MISTAKES)
 def test_a_mistake_is_refused_with_key_line_and_remedy(tmp_path, old, new, key, message):
     assert_refused(changed_case(tmp_path, (old, new)), key, message)
+
+
+def test_windows_of_exactly_two_lags_are_taken_in_spite_of_round_off():
+    assert 0.15 - 0.1 < 0.05  # in floating point
+    assert list(lag_fits(0.025, 0.025, 0.05, 0.1, 0.1, 0.15)) == []
+    assert list(moments_are_frames([0.05], 0.025, 0.1, 0.15)) == []

@@ -12,10 +12,15 @@ from bedchain.case.schema import load_schema, schema_keys
 from made import ROOT
 
 NAMES = {
-    "a_box_has_gas_and_a_drum_has_none", "a_revolution_has_frames", "cells_hold_particles",
+    "a_box_has_gas_and_a_drum_has_none", "a_revolution_has_frames", "cells_can_be_counted",
+    "colour_maps_exist", "colours_exist", "earlier_velocities_are_in_the_window",
+    "jumps_of_the_recurrence_have_targets", "lags_fill_the_comparison", "lags_of_the_discussion_fit",
+    "moments_are_steps",
+    "cells_hold_particles", "cells_of_the_recurrence_hold_particles",
     "cells_of_the_discussion_hold_particles", "drum_is_dumped_in_binary_and_once",
     "drum_is_round_and_flat", "gas_cells_fit", "gas_cells_resolve_the_bed", "gas_is_light",
     "gas_step_is_stable", "gas_step_resolves_the_fall", "gas_steps_nest", "lag_fits",
+    "lengths_are_in_metres", "steps_can_be_counted",
     "moments_are_frames", "particles_carry_the_bed", "particles_fit", "particles_fit_into_the_drum",
     "ranks_share_gas_evenly", "repeats_start_at_a_segment", "seed_is_prime", "splits_lie_in_bed",
     "step_is_stable", "steps_nest", "windows_lie_in_time",

@@ -58,7 +58,7 @@ MISTAKES = [
     ("height_m: 0.45", "height_m: 0.45\n  dem_step_s: 1e-5", "bed.dem_step_s", "time.dem_step_s"),
     ("seed: 15485863", "seed: 15485863\nzzz: 1", "zzz", "known here"),
     ("width_m: 0.09", "thickness_m: 0.001", "bed.width_m", "add it"),
-    ("number: 7200", "number: 7200\n  diameter_m: -1.0e-3", "particles.diameter_m", "above 0"),
+    ("number: 7200", "number: 7200\n  diameter_m: -1.0e-3", "particles.diameter_m", "at least 1e-06"),
     ("number: 7200", "number: many", "particles.number", "integer"),
     ("number: 7200", "number: 7200.5", "particles.number", "integer"),
     ("number: 7200", "number: true", "particles.number", "integer"),

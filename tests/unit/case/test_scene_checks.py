@@ -2,12 +2,13 @@
 """Scenes that cannot be built, each refused with key and remedy."""
 
 import math
+import tracemalloc
 
 import pytest
 import yaml
 
 from bedchain.case.load import load_case
-from bedchain.case.scene_checks import drum_sites
+from bedchain.case.scene_checks import drum_sites, surely_fit
 from bedchain.errors import CaseError
 from made import ROOT
 
@@ -39,7 +40,7 @@ DRUM_MISTAKES = [
     ({"bed": {"height_m": 0.25}}, "bed.height_m", "take bed.width_m (0.24 m)"),
     ({"bed": {"layers": "many", "thickness_m": 0.03}}, "bed.layers", "take one"),
     ({"drum": {"revolution_s": 5.25}}, "drum.revolution_s", "multiple of time.frame_interval_s"),
-    ({"drum": {"revolution_s": -5.2}}, "drum.revolution_s", "above 0"),
+    ({"drum": {"revolution_s": -5.2}}, "drum.revolution_s", "at least 0.001"),
     ({"drum": {"revolution": 5.2}}, "drum.revolution", "did you mean revolution_s?"),
     ({"particles": {"number": 3800}}, "particles.number", "sites in a drum"),
     ({"run": {"dump_format": "text"}}, "run.dump_format", "take binary"),
@@ -72,3 +73,18 @@ def test_as_many_fit_as_the_lattice_has_sites(changed):
     load_case(changed(particles={"number": sites}))
     with pytest.raises(CaseError, match=f"take at most {sites}"):
         load_case(changed(particles={"number": sites + 1}))
+
+
+@pytest.mark.parametrize(("diameter", "particle"), [(0.24, 3e-3), (0.1, 3e-3), (0.0101, 1e-3), (1e-3, 9e-4)])
+def test_particles_that_surely_fit_are_no_more_than_the_sites(diameter, particle):
+    assert not surely_fit(drum_sites(diameter, particle) + 1, diameter, particle)
+
+
+def test_a_drum_in_millimetres_is_asked_about_and_takes_no_memory(changed):
+    file = changed(bed={"width_m": 240.0, "height_m": 240.0})
+    tracemalloc.start()
+    with pytest.raises(CaseError, match="240 m wide: were millimetres meant"):
+        load_case(file)
+    assert tracemalloc.get_traced_memory()[1] < 50e6
+    tracemalloc.stop()
+    assert drum_sites(24.0, 3e-3) > 37e6  # by rows: a table of all sites would have 0.8 GB

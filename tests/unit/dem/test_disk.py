@@ -22,8 +22,16 @@ def test_many_layers_take_more_disk():
 def test_the_paper_s_run_needs_gigabytes_and_the_short_one_megabytes(paper):
     frames, number = 801, 81000
     positions = frames * number * (5 * 8 + 4 * 4 + 4)
-    assert positions < run_bytes(paper) < 2 * positions
+    once = {"comparison": paper["comparison"] | {"repeats": 0}}
+    assert positions < run_bytes(paper | once) < 2 * positions
     assert run_bytes(load_case(ROOT / "cases" / "short" / "case.yaml")) < 500e6
+
+
+def test_repeats_take_as_much_disk_as_their_windows(paper):
+    sizes = [
+        run_bytes(paper | {"comparison": paper["comparison"] | {"repeats": number}}) for number in (0, 4)
+    ]
+    assert 1.9 < sizes[1] / sizes[0] < 2.1  # four windows of 5 s after 20 s
 
 
 def test_a_full_disk_is_refused_with_space_needed_and_free(tmp_path):

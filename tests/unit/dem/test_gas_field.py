@@ -1,10 +1,12 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Which gas is nearest to a time, and the gas of an archive; reading OpenFOAM's own is in tests/solver."""
 
+import os
+
 import numpy as np
 import pytest
 
-from bedchain.dem.gas_field import gas_near, nearest_gas
+from bedchain.dem.gas_field import gas_near, nearest_gas, read_gas_field
 from bedchain.errors import UserError
 
 SEGMENTS = [{"end_s": end, "folder": f"dem/segment_{end:g}"} for end in (0.5, 1.0, 1.5)]
@@ -32,3 +34,15 @@ def test_archived_gas_has_each_value_where_its_cell_is(tmp_path):
     centres = gas.mesh.cell_centers().points
     assert centres[:, 0] == pytest.approx(x) and centres[:, 2] == pytest.approx(z)
     assert gas.mesh.cell_data["voidage"] == pytest.approx(1.0 + 10 * centres[:, 0] + centres[:, 2], abs=1e-3)
+
+
+def test_gas_outside_the_run_and_pipes_in_it_are_refused(tmp_path):
+    for name in ("/tmp/gas.npz", "../gas.npz"):
+        with pytest.raises(UserError, match="is not within this folder"):
+            gas_near({"gas": name}, tmp_path, "voidage", 1.0)
+    with pytest.raises(UserError, match="is not within this folder"):
+        nearest_gas({"segments": [{"end_s": 1.0, "folder": "../dem"}]}, tmp_path, "voidage", 1.0)
+    (tmp_path / "0.5").mkdir()
+    os.mkfifo(tmp_path / "0.5" / "voidage")
+    with pytest.raises(UserError, match="voidage is a special file"):
+        read_gas_field(tmp_path, "voidage")

@@ -39,3 +39,15 @@ def test_a_bad_case_or_a_full_disk_leaves_no_file(tmp_path, monkeypatch):
     with pytest.raises(UserError, match="free some space"):
         write_parameters(changed_case(tmp_path), tmp_path / "full")
     assert not list((tmp_path / "full").iterdir())
+
+
+def test_a_bed_too_large_for_the_memory_leaves_no_file(tmp_path):
+    large = ("number: 7200", "number: 100000000\n  diameter_m: 5.0e-6")
+    small = tmp_path / "small"
+    small.mkdir()
+    file = changed_case(small, large, (END, "  allow_unstable_step: true\n" + END))
+    text = file.read_text()
+    file.write_text(text + "contact: {young_modulus_Pa: 1.0e+7}\n")
+    with pytest.raises(UserError, match="the simulation needs about|learning the chains needs about"):
+        write_parameters(file, tmp_path / "large")
+    assert not (tmp_path / "large").exists()

@@ -3,6 +3,7 @@
 
 import hashlib
 import json
+import os
 
 import pytest
 
@@ -130,3 +131,25 @@ def test_hashes_know_contents_and_not_their_order(tmp_path):
     assert keys_hash({"a": 1, "b": 2}) == keys_hash({"b": 2, "a": 1}) != keys_hash({"a": 1, "b": 3})
     (tmp_path / "file").write_bytes(b"positions")
     assert file_hash(tmp_path / "file") == hashlib.sha256(b"positions").hexdigest()
+
+
+def test_files_of_an_archive_stay_in_its_folder(folder):
+    data = json.loads((folder / "provenance.json").read_text())["files"]["positions.xz"]
+    for name, message in (
+        ("../case.yaml", "not within this folder"),
+        ("/etc/passwd", "not within this folder"),
+    ):
+        rewritten(folder, files={name: data})
+        with pytest.raises(UserError, match=message):
+            check_files(folder, read_provenance(folder))
+
+
+def test_special_files_of_an_archive_are_refused(folder):
+    (folder / "positions.xz").unlink()
+    os.mkfifo(folder / "positions.xz")
+    with pytest.raises(UserError, match="positions.xz is a special file"):
+        check_files(folder, read_provenance(folder))
+    (folder / "provenance.json").unlink()
+    os.mkfifo(folder / "provenance.json")
+    with pytest.raises(UserError, match="provenance.json is a special file"):
+        read_provenance(folder)

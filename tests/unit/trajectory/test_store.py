@@ -2,6 +2,7 @@
 """The trajectory of a run, and every fault of its manifest and frames named; runs are in tests/stages."""
 
 import json
+import os
 
 import numpy as np
 import pytest
@@ -87,3 +88,34 @@ def test_a_store_of_another_shape_is_refused(bed):
 def test_the_remedy_names_the_segment_or_the_run():
     assert f"delete dem/{STAMP}/segment_0020, the" in remedy(f"dem/{STAMP}/segment_0020/frame_5.bin")
     assert remedy("frame_5.bin") == "delete the run's folder and run again"
+
+
+@pytest.mark.parametrize(
+    ("change", "message"),
+    [
+        (lambda m: m["frames"][2].update(file="/etc/passwd"), "/etc/passwd is not within this folder"),
+        (lambda m: m["frames"][2].update(file="../dem/frame_1.bin"), "is not within this folder"),
+        (lambda m: m["segments"][0].update(folder="../other"), "../other is not within this folder"),
+        (lambda m: m.update(gas="/dev/zero"), "/dev/zero is not within this folder"),
+        (lambda m: m["frames"][2].update(file=7), "7 is no name of a file"),
+        (lambda m: m["frames"][2].pop("file"), "no readable manifest"),
+        (lambda m: m.update(segments=7), "no readable manifest"),
+    ],
+)
+def test_names_of_a_manifest_stay_in_its_folder(bed, change, message):
+    changed(bed[1], change)
+    with pytest.raises(UserError, match=message):
+        read_manifest(bed[1])
+
+
+def test_a_pipe_in_place_of_a_frame_or_of_the_manifest_is_refused(bed):
+    _, dem = bed
+    frame = dem.parent / json.loads(dem.read_text())["frames"][3]["file"]
+    frame.unlink()
+    os.mkfifo(frame)
+    with pytest.raises(UserError, match=f"{frame.name} is a special file"):
+        parse(dem)
+    dem.unlink()
+    os.mkfifo(dem)
+    with pytest.raises(UserError, match="dem.json is a special file"):
+        read_manifest(dem)

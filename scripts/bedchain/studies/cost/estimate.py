@@ -9,6 +9,7 @@ import pandas as pd
 from bedchain.case.presets import Preset, with_preset
 from bedchain.case.schema import Case
 from bedchain.dem import disk
+from bedchain.dem.memory import solver_bytes
 from bedchain.errors import CaseError
 from bedchain.physics.whole_numbers import ratio
 from bedchain.studies.cost import machine_speed
@@ -67,9 +68,7 @@ def solver_stages(case: Case, speed: Speed) -> dict[str, Numbers]:
     """Rows of settling, particles, exchange, gas, start-ups and repeats."""
     bed, time = machine_speed.bed_of(case), case["time"]
     window_s = case["comparison"]["end_s"] - case["comparison"]["start_s"]
-    memory_mb = (
-        machine_speed.RUN_MB + bed.ranks * machine_speed.RANK_MB + bed.number * machine_speed.PARTICLE_MB
-    )
+    memory_mb = solver_bytes(bed.number, bed.ranks) / MEGABYTE
     parts = {
         name: solver_wall(bed, span, speed) for name, span in (("run", time["end_s"]), ("repeat", window_s))
     }

@@ -19,6 +19,7 @@ from numpy.typing import NDArray
 
 from bedchain.case.schema import Case
 from bedchain.dem.segments import read_parameters
+from bedchain.files import path_inside
 from bedchain.physics.whole_numbers import ratio
 
 SOLVERS = ("dem", "exchange", "gas")
@@ -29,8 +30,6 @@ EXCHANGED = 9.4e6  # particles mapped to the gas cells and back per second [1/s]
 GAS_STEP_S = 1.7e-3  # of a step of the gas with few cells [s]
 GAS_CELL_S = 2.3e-6  # added for each cell of a rank [s]
 SEGMENT_START_S = 0.8  # of a segment: start of the programs, mesh, restart and frames [s]
-# Memory of the coupled solver [MB]: mpirun and Python, each rank, each particle
-RUN_MB, RANK_MB, PARTICLE_MB = 96.0, 87.0, 1.5e-3
 
 
 class Job(NamedTuple):
@@ -183,7 +182,7 @@ def simulated_here(dem: Path) -> dict[str, Any] | None:
     """Manifest of a run whose segments are here; None for a run from an archive, timed elsewhere."""
     try:
         manifest = json.loads(dem.read_text(encoding="utf-8"))
-        here = (dem.parent / manifest["segments"][0]["folder"]).exists()
+        here = path_inside(dem.parent, manifest["segments"][0]["folder"]).exists()
     except (OSError, ValueError, KeyError, IndexError):
         return None
     return dict(manifest) if here else None
