@@ -12,7 +12,7 @@ from typing import Any
 from bedchain.case.checks import physical_problems
 from bedchain.case.scene_checks import checked_keys
 from bedchain.case.schema import Case, load_schema
-from bedchain.case.strict_yaml import read_yaml
+from bedchain.case.strict_yaml import Lines, read_yaml
 from bedchain.errors import CaseError, UserError
 from bedchain.physics.whole_numbers import ratio
 
@@ -70,10 +70,10 @@ def read_presets(file: Path = PRESETS) -> dict[str, Preset]:
     """
     if not file.exists():
         return {}
-    content, _ = read_yaml(file)
+    content, lines = read_yaml(file)
     if not isinstance(content, dict):
         raise UserError(f"{file} holds no presets; {MADE_BY}")
-    return {name: _preset(file, name, given) for name, given in content.items()}
+    return {name: _preset(file, name, given, lines) for name, given in content.items()}
 
 
 def preset_named(name: str, file: Path = PRESETS) -> Preset:
@@ -141,15 +141,17 @@ def with_preset(case: Case, preset: Preset, file: Path = PRESETS) -> Case:
     return changed
 
 
-def _preset(file: Path, name: str, given: Any) -> Preset:
+def _preset(file: Path, name: str, given: Any, lines: Lines) -> Preset:
     if not isinstance(given, dict):
-        raise UserError(f"{file}, {name}: {given!r} is no preset, which has {', '.join(SETTINGS)}; {MADE_BY}")
+        place = f"{file}, line {lines[name]}, {name}"
+        raise UserError(f"{place}: {given!r} is no preset, which has {', '.join(SETTINGS)}; {MADE_BY}")
     known = load_schema()["properties"]["chain"]["properties"]["models"]["items"]["enum"]
     for key in SETTINGS:
         value = given.get(key)
         if not (value in known if key == "model" else is_positive(value)):
             wanted = f"one of {', '.join(known)}" if key == "model" else "a number above 0"
-            raise UserError(f"{file}, {name}: {key} is {value!r}, not {wanted}; {MADE_BY}")
+            place = f"{file}, line {lines.get(f'{name}.{key}', lines[name])}, {name}"
+            raise UserError(f"{place}: {key} is {value!r}, not {wanted}; {MADE_BY}")
     measured = {key: float(given[key]) for key in MEASURED if is_positive(given.get(key))}
     about = str(given.get("measured_on", ""))
     return Preset(
