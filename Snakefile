@@ -11,16 +11,25 @@ from pathlib import Path
 
 sys.path.insert(0, f"{workflow.basedir}/scripts")
 
-from bedchain.workflow import case_or_exit, code, pick, preset_name, reference_or_exit, source_files
+from bedchain.workflow import (
+    case_or_exit,
+    code,
+    pick,
+    preset_name,
+    reference_or_exit,
+    source_files,
+    words_or_exit,
+)
 
 if not workflow.is_main_process:  # a job's own snakemake repeats no hint
     logging.getLogger("bedchain").setLevel(logging.ERROR)
 
-NAME = config.get("case", "short")
-PRESET = preset_name(config)
+WORDS = words_or_exit(config, workflow.config_settings.config_args)  # of --config
+NAME = WORDS.get("case", "short")
+PRESET = preset_name(WORDS)
 CASE = case_or_exit(NAME, PRESET)
-REFERENCE = reference_or_exit(config.get("reference"), NAME, CASE)
-WITH_PAPER = "case" not in config and Path("cases/paper/reference").exists()
+REFERENCE = reference_or_exit(WORDS.get("reference"), NAME, CASE)
+WITH_PAPER = "case" not in WORDS and Path("cases/paper/reference").exists()
 FOLDER = f"{NAME}-{PRESET}" if PRESET else NAME
 RESULTS = f"results/{FOLDER}"
 FIGURES = f"results/{FOLDER}/figures"
@@ -85,11 +94,11 @@ if WITH_PAPER:
         snakefile:
             "Snakefile"
         config:
-            {**config, "case": "paper", "studies": False}
+            {**WORDS, "case": "paper", "studies": False}
 
     use rule * from paper exclude build_solver as paper_*
 
 
-if config.get("studies", True):
+if WORDS.get("studies", True):
 
     include: "scripts/studies.smk"

@@ -33,6 +33,28 @@ def test_every_script_has_the_name_of_its_rule(scripted):
         assert Path(rule.script).name == f"{name}.py"
 
 
+def test_shell_lines_hold_only_words_that_mean_nothing_to_a_shell(rules):
+    """File names are safe by the rule for names of cases, and texts of a user are quoted.
+
+    So the shell lines stay as they are: another line makes each bed that was simulated run again.
+    """
+    for name, rule in rules.items():
+        line = rule.shellcmd or ""
+        params = [value for key, value in rule.params.items() if f"{{params.{key}}}" in line]
+        for value in [*rule.input, *rule.output, *rule.log, *params] if line else []:
+            safe = callable(value) or re.fullmatch(r"[A-Za-z0-9._/{} =-]*", str(value))
+            assert safe, f"rule {name}: {value}"
+
+
+def test_options_of_a_user_are_quoted(tmp_path):
+    word = "$(touch x)"
+    with opened(linked(tmp_path), {"stability": word, "study": word}) as workflow:
+        rules = {rule.name: rule for rule in workflow._workflow.rules}
+    assert rules["readme"].params.options == f"'--study={word}'"
+    assert rules["study_stability"].params.extent == word
+    assert "{params.extent:q}" in rules["study_stability"].shellcmd
+
+
 def test_every_log_has_the_name_of_its_rule(rules):
     for name, rule in rules.items():
         for log in rule.log:

@@ -10,10 +10,11 @@ from pathlib import Path
 from typing import Any
 
 from bedchain.case.checks import physical_problems
+from bedchain.case.names import NAME_RULE, is_name
 from bedchain.case.scene_checks import checked_keys
 from bedchain.case.schema import Case, load_schema
 from bedchain.case.strict_yaml import Lines, read_yaml
-from bedchain.errors import CaseError, UserError
+from bedchain.errors import CaseError, UserError, guess
 from bedchain.physics.whole_numbers import ratio
 
 PRESETS = Path("cases/presets.yaml")
@@ -97,7 +98,8 @@ def preset_named(name: str, file: Path = PRESETS) -> Preset:
     if not presets:
         raise UserError(f"there is no preset {name!r}: {file} holds no presets; {MADE_BY}")
     if name not in presets:
-        raise UserError(f"there is no preset {name!r} in {file}: take one of {', '.join(presets)}")
+        known = ", ".join(presets)
+        raise UserError(f"there is no preset {name!r} in {file}: take one of {known}{guess(name, presets)}")
     return presets[name]
 
 
@@ -145,6 +147,8 @@ def _preset(file: Path, name: str, given: Any, lines: Lines) -> Preset:
     if not isinstance(given, dict):
         place = f"{file}, line {lines[name]}, {name}"
         raise UserError(f"{place}: {given!r} is no preset, which has {', '.join(SETTINGS)}; {MADE_BY}")
+    if not is_name(name):
+        raise UserError(f"{file}, line {lines[name]}: the name of the preset {name!r} must have {NAME_RULE}")
     known = load_schema()["properties"]["chain"]["properties"]["models"]["items"]["enum"]
     for key in SETTINGS:
         value = given.get(key)
