@@ -9,20 +9,27 @@ import logging
 import sys
 from pathlib import Path
 
+from snakemake.cli import get_argument_parser
+
 sys.path.insert(0, f"{workflow.basedir}/scripts")
 
 from bedchain.workflow import (
     case_or_exit,
     code,
+    options_or_exit,
     pick,
     preset_name,
     reference_or_exit,
     source_files,
+    targets_or_exit,
     words_or_exit,
 )
 
 if not workflow.is_main_process:  # a job's own snakemake repeats no hint
     logging.getLogger("bedchain").setLevel(logging.ERROR)
+TYPED = workflow.is_main_process and "snakemake" in Path(sys.argv[0]).parts[-2:]  # sys.argv is a user's line
+if TYPED:
+    options_or_exit(sys.argv[1:], workflow.resource_settings.cores, workflow.resource_settings.nodes)
 
 WORDS = words_or_exit(config, workflow.config_settings.config_args)  # of --config
 NAME = WORDS.get("case", "short")
@@ -102,3 +109,13 @@ if WITH_PAPER:
 if WORDS.get("studies", True):
 
     include: "scripts/studies.smk"
+
+
+# A word that nothing reads ends here, before anything is planned. Snakemake itself gets the targets later.
+if TYPED and WORDS.get("studies", True):
+    targets_or_exit(
+        get_argument_parser().parse_known_args(sys.argv[1:])[0].targets,
+        WORDS,
+        [rule.name for rule in workflow.rules],
+        {NAME, FOLDER, *(["paper"] if WITH_PAPER else [])},
+    )

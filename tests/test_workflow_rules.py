@@ -46,13 +46,10 @@ def test_shell_lines_hold_only_words_that_mean_nothing_to_a_shell(rules):
             assert safe, f"rule {name}: {value}"
 
 
-def test_options_of_a_user_are_quoted(tmp_path):
-    word = "$(touch x)"
-    with opened(linked(tmp_path), {"stability": word, "study": word}) as workflow:
-        rules = {rule.name: rule for rule in workflow._workflow.rules}
-    assert rules["readme"].params.options == f"'--study={word}'"
-    assert rules["study_stability"].params.extent == word
-    assert "{params.extent:q}" in rules["study_stability"].shellcmd
+@pytest.mark.parametrize("key", ["stability", "study", "reference", "peers", "tradeoff", "preset"])
+def test_a_command_as_a_value_of_a_user_is_refused(tmp_path, key):
+    with pytest.raises(SystemExit), opened(linked(tmp_path), {key: "$(touch x)"}) as workflow:
+        assert workflow._workflow.rules
 
 
 def test_every_log_has_the_name_of_its_rule(rules):

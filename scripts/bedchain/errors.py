@@ -61,10 +61,16 @@ class CaseError(UserError):
         super().__init__("\n".join([f"{file} has {count}:", *(f"  {problem}" for problem in problems)]))
 
 
+def nearest(word: str, known: Iterable[str]) -> str | None:
+    """The known word that was probably meant; None where none is near."""
+    near = difflib.get_close_matches(word.lower(), known, 1)
+    return near[0] if near else None
+
+
 def guess(word: str, known: Iterable[str]) -> str:
     """The known word that was probably meant, as an end of a message; empty where none is near."""
-    near = difflib.get_close_matches(word, known, 1)
-    return f"; did you mean {near[0]}?" if near else ""
+    near = nearest(word, known)
+    return f"; did you mean {near}?" if near else ""
 
 
 @contextmanager

@@ -2,7 +2,7 @@
 """The case of a run, its keys, and the files that a rule depends on, for the Snakefile."""
 
 import ast
-from collections.abc import Mapping, Sequence
+from collections.abc import Collection, Mapping, Sequence
 from functools import cache
 from pathlib import Path
 from typing import Any
@@ -13,7 +13,9 @@ from bedchain.case.parameters import solver_parameters
 from bedchain.case.presets import preset_named, read_presets, with_preset
 from bedchain.case.scene_checks import used_keys
 from bedchain.case.schema import Case, load_schema
-from bedchain.command_line import as_typed, peers_options
+from bedchain.command_line.peers import peers_options
+from bedchain.command_line.targets import check_options, check_targets
+from bedchain.command_line.words import as_typed, check_words
 from bedchain.errors import UserError, guess, report_user_errors
 from bedchain.trajectory.archive import SIMULATE, check_archive
 
@@ -37,7 +39,7 @@ CASES = Path("cases")
 
 
 def words_or_exit(config: Mapping[str, Any], typed: Sequence[str] | None) -> dict[str, Any]:
-    """Words of ``--config``, checked (`command_line`), or one clear message and the end of snakemake.
+    """Words of ``--config``, as typed and checked, or one clear message and the end of snakemake.
 
     Parameters
     ----------
@@ -47,7 +49,22 @@ def words_or_exit(config: Mapping[str, Any], typed: Sequence[str] | None) -> dic
         The words after ``--config`` as they were typed.
     """
     with report_user_errors():
-        return as_typed(config, typed)
+        check_words(words := as_typed(config, typed), typed)
+        return words
+
+
+def options_or_exit(options: Sequence[str], cores: int | None, jobs: int | None) -> None:
+    """`check_options`; on an error its message, and snakemake ends before any job."""
+    with report_user_errors():
+        check_options(options, cores, jobs)
+
+
+def targets_or_exit(
+    targets: Collection[str], words: Mapping[str, Any], rules: Collection[str], folders: Collection[str]
+) -> None:
+    """`check_targets`; on an error its message, and snakemake ends before any job."""
+    with report_user_errors():
+        check_targets(targets, words, rules, case_names(), folders)
 
 
 def peers_or_exit(option: object) -> str:

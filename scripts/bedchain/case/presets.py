@@ -21,6 +21,7 @@ PRESETS = Path("cases/presets.yaml")
 MADE_BY = "snakemake tradeoff measures presets and writes results/<case>/presets.yaml"
 SETTINGS = ("cell_m", "lag_s", "model")
 MEASURED = ("cost_s", "error_floors")
+OTHERS = ("density_floors", "measured_on")
 LEVEL_DIAMETERS = 0.5  # an archive keeps positions to half a diameter: cells of whole levels are exact
 
 
@@ -150,17 +151,24 @@ def _preset(file: Path, name: str, given: Any, lines: Lines) -> Preset:
     if not is_name(name):
         raise UserError(f"{file}, line {lines[name]}: the name of the preset {name!r} must have {NAME_RULE}")
     known = load_schema()["properties"]["chain"]["properties"]["models"]["items"]["enum"]
-    for key in SETTINGS:
-        value = given.get(key)
-        if not (value in known if key == "model" else is_positive(value)):
-            wanted = f"one of {', '.join(known)}" if key == "model" else "a number above 0"
-            place = f"{file}, line {lines.get(f'{name}.{key}', lines[name])}, {name}"
-            raise UserError(f"{place}: {key} is {value!r}, not {wanted}; {MADE_BY}")
-    measured = {key: float(given[key]) for key in MEASURED if is_positive(given.get(key))}
+    for key in dict.fromkeys((*SETTINGS, *given)):
+        place = f"{file}, line {lines.get(f'{name}.{key}', lines[name])}, {name}"
+        _check_setting(place, key, given.get(key), known)
+    measured = {key: float(given[key]) for key in MEASURED if key in given}
     about = str(given.get("measured_on", ""))
     return Preset(
         name, float(given["cell_m"]), float(given["lag_s"]), given["model"], **measured, measured_on=about
     )
+
+
+def _check_setting(place: str, key: str, value: Any, models: list[str]) -> None:
+    keys = (*SETTINGS, *MEASURED, *OTHERS)
+    if key not in keys:
+        raise UserError(f"{place}: {key} is an unknown key{guess(key, keys)}; known are {', '.join(keys)}")
+    if key in OTHERS or (value in models if key == "model" else is_positive(value)):
+        return
+    wanted = f"one of {', '.join(models)}" if key == "model" else "a number above 0"
+    raise UserError(f"{place}: {key} is {value!r}, not {wanted}; {MADE_BY}")
 
 
 def is_positive(value: Any) -> bool:

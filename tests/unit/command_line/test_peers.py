@@ -1,37 +1,14 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Words of the command line: their values as they were typed, and safe in a shell line."""
+"""Options of the study peers: words of a shell line, and what is refused."""
 
 import shlex
 
 import pytest
 
-from bedchain.command_line import as_typed, peers_options
+from bedchain.command_line.peers import peers_options
 from bedchain.errors import UserError
 
 CASES = ["short", "paper"]
-
-
-@pytest.mark.parametrize(
-    "text", ["2024", "2024_11_25", "1e5", "0700", "007", "True", "nan", "1.50", "[a]", "{b: c}", "~"]
-)
-def test_what_looks_like_a_number_is_text_where_a_name_is_expected(text):
-    parsed = {"case": 20241125, "preset": ["x=y"], "tradeoff": {"dem": "all"}}  # as snakemake reads them
-    typed = [f"case={text}", "preset=x=y", "tradeoff={dem: all}"]
-    assert as_typed(parsed, typed) == {"case": text, "preset": "x=y", "tradeoff": {"dem": "all"}}
-
-
-def test_quotes_are_understood_as_before():
-    assert as_typed({"case": "2024"}, ["case='2024'"]) == {"case": "2024"}
-
-
-def test_the_case_of_the_paper_s_module_stays():
-    assert as_typed({"case": "paper", "preset": "1"}, ["preset=1"]) == {"case": "paper", "preset": "1"}
-    assert as_typed({"case": "short"}, None) == {"case": "short"}
-
-
-def test_a_number_of_a_configuration_file_wants_quotes():
-    with pytest.raises(UserError, match="case is 20241125, not text: put it in quotes"):
-        as_typed({"case": 20241125}, None)
 
 
 @pytest.mark.parametrize(

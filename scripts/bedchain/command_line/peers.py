@@ -1,48 +1,16 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Words of the command line: ``--config key=value`` as typed, and checked before anything is planned."""
+"""Options of the study peers, ``--config peers=...``, as words of a shell line."""
 
 import math
 import shlex
-from collections.abc import Collection, Mapping, Sequence
+from collections.abc import Collection, Mapping
 from typing import Any
 
 from bedchain.errors import UserError, guess
 
-# words of --config whose values are text, whatever they look like
-TEXTS = ("case", "preset", "fidelity", "reference", "stability", "study")
 # options of the study peers -> kind
 PEERS = {"beds": "cases", "repeats": "count", "duration": "number", "longest": "number", "start": "number"}
 PEERS_REMEDY = "take --config peers='{beds: short, repeats: 3}', with " + ", ".join(PEERS)
-
-
-def as_typed(config: Mapping[str, Any], typed: Sequence[str] | None) -> dict[str, Any]:
-    """Words of ``--config``, where names are text: snakemake reads 2024_11_25 as the number 20241125.
-
-    Parameters
-    ----------
-    config : mapping of str to value
-        As snakemake read them, from the command line and from files.
-    typed : sequence of str, optional
-        ``key=value``, as they were typed.
-
-    Returns
-    -------
-    dict of str to value
-
-    Raises
-    ------
-    UserError
-        A name in a configuration file is a number.
-    """
-    texts = dict(word.split("=", 1) for word in typed or () if "=" in word)
-    words = dict(config)
-    for key in TEXTS:
-        if key not in words or isinstance(words[key], str):
-            continue
-        if key not in texts:
-            raise UserError(f"--configfile: {key} is {words[key]}, not text: put it in quotes")
-        words[key] = texts[key]
-    return words
 
 
 def peers_options(option: object, cases: Collection[str]) -> str:
