@@ -5,6 +5,7 @@
 #   ... --config reference=simulate            not from the archive cases/<case>/reference/, but by the solvers
 #   ... --config preset=fast                   chains of a preset of cases/presets.yaml, into results/<case>-fast
 # A rule gets only the keys of the case that it needs, so a changed key reruns only the rules that use it.
+import atexit
 import logging
 import sys
 from pathlib import Path
@@ -13,6 +14,7 @@ from snakemake.cli import get_argument_parser
 
 sys.path.insert(0, f"{workflow.basedir}/scripts")
 
+from bedchain.command_line.failures import failure_report
 from bedchain.workflow import (
     case_or_exit,
     code,
@@ -119,3 +121,10 @@ if TYPED and WORDS.get("studies", True):
         [rule.name for rule in workflow.rules],
         {NAME, FOLDER, *(["paper"] if WITH_PAPER else [])},
     )
+
+
+# The cause of a failure stands in the last lines, below snakemake's own.
+if workflow.is_main_process:
+
+    onerror:
+        atexit.register(print, failure_report(map(Path, log)), file=sys.stderr)
