@@ -5,22 +5,40 @@
 #   ... --config reference=simulate            not from the archive cases/<case>/reference/, but by the solvers
 #   ... --config preset=fast                   chains of a preset of cases/presets.yaml, into results/<case>-fast
 # A rule gets only the keys of the case that it needs, so a changed key reruns only the rules that use it.
+import atexit
 import logging
 import sys
 from pathlib import Path
 
+from snakemake.cli import get_argument_parser
+
 sys.path.insert(0, f"{workflow.basedir}/scripts")
 
-from bedchain.workflow import case_or_exit, code, pick, preset_name, reference_or_exit, source_files
+from bedchain.command_line.failures import failure_report
+from bedchain.workflow import (
+    case_or_exit,
+    code,
+    options_or_exit,
+    pick,
+    preset_name,
+    reference_or_exit,
+    source_files,
+    targets_or_exit,
+    words_or_exit,
+)
 
 if not workflow.is_main_process:  # a job's own snakemake repeats no hint
     logging.getLogger("bedchain").setLevel(logging.ERROR)
+TYPED = workflow.is_main_process and "snakemake" in Path(sys.argv[0]).parts[-2:]  # sys.argv is a user's line
+if TYPED:
+    options_or_exit(sys.argv[1:], workflow.resource_settings.cores, workflow.resource_settings.nodes)
 
-NAME = config.get("case", "short")
-PRESET = preset_name(config)
+WORDS = words_or_exit(config, workflow.config_settings.config_args)  # of --config
+NAME = WORDS.get("case", "short")
+PRESET = preset_name(WORDS)
 CASE = case_or_exit(NAME, PRESET)
-REFERENCE = reference_or_exit(config.get("reference"), NAME, CASE)
-WITH_PAPER = "case" not in config and Path("cases/paper/reference").exists()
+REFERENCE = reference_or_exit(WORDS.get("reference"), NAME, CASE)
+WITH_PAPER = "case" not in WORDS and Path("cases/paper/reference").exists()
 FOLDER = f"{NAME}-{PRESET}" if PRESET else NAME
 RESULTS = f"results/{FOLDER}"
 FIGURES = f"results/{FOLDER}/figures"
@@ -85,11 +103,28 @@ if WITH_PAPER:
         snakefile:
             "Snakefile"
         config:
-            {**config, "case": "paper", "studies": False}
+            {**WORDS, "case": "paper", "studies": False}
 
     use rule * from paper exclude build_solver as paper_*
 
 
-if config.get("studies", True):
+if WORDS.get("studies", True):
 
     include: "scripts/studies.smk"
+
+
+# A word that nothing reads ends here, before anything is planned. Snakemake itself gets the targets later.
+if TYPED and WORDS.get("studies", True):
+    targets_or_exit(
+        get_argument_parser().parse_known_args(sys.argv[1:])[0].targets,
+        WORDS,
+        [rule.name for rule in workflow.rules],
+        {NAME, FOLDER, *(["paper"] if WITH_PAPER else [])},
+    )
+
+
+# The cause of a failure stands in the last lines, below snakemake's own.
+if workflow.is_main_process:
+
+    onerror:
+        atexit.register(print, failure_report(map(Path, log)), file=sys.stderr)

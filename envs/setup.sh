@@ -37,6 +37,7 @@ check_packages() {
     mkdir -p .venv/checks
 }
 
+[ $# -le 1 ] || fail "setup.sh takes one word at most, not '$*'"
 case ${1-} in
 '' | checks) ;;
 *) fail "setup.sh knows the word 'checks' only, not '$1'" ;;

@@ -94,7 +94,7 @@ FIGURE_RULES = {
 }
 
 # of the studies `scores` and `tradeoff`
-if config.get("studies", True):
+if WORDS.get("studies", True):
     FIGURE_RULES |= {
         "plot_pareto": {
             "name": "fig_pareto",

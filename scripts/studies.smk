@@ -4,8 +4,10 @@
 #   validate  a case against its measured profiles       scores   all chains, chosen by validation, tested once
 #   estimate  what a case will cost, before it runs      stability solvers and chains at their extremes
 #   tradeoff  what accuracy costs, of chains and of simulated beds; the presets
+import shlex
+
 from bedchain.studies.tradeoff.bed_variants import variants_or_exit
-from bedchain.workflow import dated
+from bedchain.workflow import dated, peers_or_exit
 
 SCORE_PLOTS = ["fig_pareto", "fig5_best", "fig_autocorrelation", "fig_distribution_best"]
 
@@ -64,7 +66,7 @@ rule compare_peers:
     threads: workflow.cores or 1
     params:
         folder=subpath(output.table, parent=True),
-        options=" ".join(f"--{key} {value}" for key, value in config.get("peers", {}).items()),
+        options=peers_or_exit(WORDS.get("peers")),  # quoted
     shell:
         "python scripts/compare_peers.py --solver {input.solver} --folder {params.folder} {params.options}"
         " 2>&1 | tee {log} >&2"
@@ -95,9 +97,9 @@ rule study_stability:
         "../envs/python.yaml"
     params:
         folder=subpath(output.table, parent=True),
-        extent=config.get("stability", "full"),
+        extent=WORDS.get("stability", "full"),
     shell:
-        "python scripts/study_stability.py --folder {params.folder} --extent {params.extent} 2>&1 | tee {log} >&2"
+        "python scripts/study_stability.py --folder {params.folder} --extent {params.extent:q} 2>&1 | tee {log} >&2"
 
 
 # Against measured profiles, where a case has them: snakemake --cores 2 --config case=mueller validate
@@ -200,7 +202,7 @@ rule estimate_cost:
 
 # What accuracy costs: chains of many settings, and the bed simulated in many ways. What was finished is kept.
 #   snakemake --cores 2 tradeoff --config tradeoff='{dem: [base, friction_0]}'     (or all, none)
-VARIANTS = variants_or_exit(config.get("tradeoff"), CASE, bool(REFERENCE))
+VARIANTS = variants_or_exit(WORDS.get("tradeoff"), CASE, bool(REFERENCE))
 TRADEOFF_PLOTS = ["fig_tradeoff", *(["fig_tradeoff_dem"] if VARIANTS else [])]
 
 
@@ -257,6 +259,6 @@ rule readme:
     conda:
         "../envs/python.yaml"
     params:
-        options=" ".join(f"--{key} {config[key]}" for key in ("case", "study") if key in config),
+        options=shlex.join(f"--{key}={WORDS[key]}" for key in ("case", "study") if key in WORDS),
     shell:
         "python scripts/write_readme.py --log {log} {params.options}"

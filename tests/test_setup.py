@@ -169,7 +169,7 @@ def test_help_names_each_target_key_and_case() -> None:
         r"^rule (\w+):\n((?:    .*\n|\n)+)", workflow[ROOT / "scripts/studies.smk"], re.MULTILINE
     )
     targets = {name for name, body in rules if "output:" not in body}
-    keys = set(re.findall(r"config\.get\(\"(\w+)\"", "".join(workflow.values())))
+    keys = set(re.findall(r"WORDS\.get\(\"(\w+)\"", "".join(workflow.values())))
     assert len(targets) > 5
     assert targets <= words
     assert keys - {"studies"} <= words  # of the paper's module

@@ -112,12 +112,44 @@ def test_an_unknown_case_or_preset_is_answered_by_the_known_ones(empty, refused)
     assert "there is no preset 'fats'" in message and "take one of fast" in message
 
 
+@pytest.mark.parametrize(
+    "name", ["my bed", "it's", "a&b", "{b}", "#x", "$(touch x)", "`touch x`", "a;b", "-x", ".x"]
+)
+def test_a_case_with_a_name_for_a_shell_is_refused_in_one_line(empty, refused, name):
+    shutil.copytree(empty / "cases" / "short", empty / "cases" / name)
+    message = refused(empty, case=name)
+    assert message.startswith(f"error: the name of the case {name!r} must have letters, digits,")
+    assert message.count("\n") == 1 and not (empty / "x").exists()
+
+
+def test_a_preset_with_such_a_name_is_refused(empty, refused):
+    (empty / "cases" / "presets.yaml").write_text('"$(touch x)": {cell_m: 0.02, lag_s: 0.2, model: static}\n')
+    assert "line 1: the name of the preset '$(touch x)' must have" in refused(empty, preset="$(touch x)")
+
+
+@pytest.mark.parametrize("name", ["2024", "2024_11_25", "1e5", "0700", "True"])
+def test_a_case_may_be_named_by_a_number(empty, name):
+    shutil.copytree(empty / "cases" / "short", empty / "cases" / name)
+    file = f"results/{name}/parameters.lig"
+    dry_run = () if name == "2024_11_25" else ("--dry-run",)
+    done = snakemake(empty, *dry_run, file, "--config", f"case={name}")
+    assert done.returncode == 0, done.stderr
+    assert (empty / file).exists() == (not dry_run)
+
+
+def test_a_preset_may_be_named_by_a_number(empty):
+    (empty / "cases" / "presets.yaml").write_text('"0700": {cell_m: 0.02, lag_s: 0.2, model: static}\n')
+    done = snakemake(empty, "--dry-run", "results/short-0700/cells.npz", "--config", "preset=0700")
+    assert done.returncode == 0, done.stderr
+
+
 def test_a_refusal_is_one_message_and_an_old_word_one_hint(empty):
     done = snakemake(empty, "--dry-run", "--config", "case=shorter", "fidelity=fast")
     assert done.returncode == 1 and "Traceback" not in done.stderr + done.stdout
     assert done.stderr.splitlines() == [
         "hint: --config: fidelity is now called preset",
-        "error: there is no case 'shorter': take --config case=NAME with one of drum, mueller, paper, short",
+        "error: there is no case 'shorter': take --config case=NAME with one of drum, mueller, paper, short; "
+        "did you mean short?",
     ]
 
 

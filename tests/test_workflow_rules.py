@@ -33,6 +33,25 @@ def test_every_script_has_the_name_of_its_rule(scripted):
         assert Path(rule.script).name == f"{name}.py"
 
 
+def test_shell_lines_hold_only_words_that_mean_nothing_to_a_shell(rules):
+    """File names are safe by the rule for names of cases, and texts of a user are quoted.
+
+    So the shell lines stay as they are: another line makes each bed that was simulated run again.
+    """
+    for name, rule in rules.items():
+        line = rule.shellcmd or ""
+        params = [value for key, value in rule.params.items() if f"{{params.{key}}}" in line]
+        for value in [*rule.input, *rule.output, *rule.log, *params] if line else []:
+            safe = callable(value) or re.fullmatch(r"[A-Za-z0-9._/{} =-]*", str(value))
+            assert safe, f"rule {name}: {value}"
+
+
+@pytest.mark.parametrize("key", ["stability", "study", "reference", "peers", "tradeoff", "preset"])
+def test_a_command_as_a_value_of_a_user_is_refused(tmp_path, key):
+    with pytest.raises(SystemExit), opened(linked(tmp_path), {key: "$(touch x)"}) as workflow:
+        assert workflow._workflow.rules
+
+
 def test_every_log_has_the_name_of_its_rule(rules):
     for name, rule in rules.items():
         for log in rule.log:

@@ -1,8 +1,9 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Errors that a user can put right, reported as one message without a traceback."""
 
+import difflib
 import sys
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
 from contextlib import contextmanager
 from dataclasses import dataclass
 from pathlib import Path
@@ -58,6 +59,18 @@ class CaseError(UserError):
         self.problems = problems
         count = "1 problem" if len(problems) == 1 else f"{len(problems)} problems"
         super().__init__("\n".join([f"{file} has {count}:", *(f"  {problem}" for problem in problems)]))
+
+
+def nearest(word: str, known: Iterable[str]) -> str | None:
+    """The known word that was probably meant; None where none is near."""
+    near = difflib.get_close_matches(word.lower(), known, 1)
+    return near[0] if near else None
+
+
+def guess(word: str, known: Iterable[str]) -> str:
+    """The known word that was probably meant, as an end of a message; empty where none is near."""
+    near = nearest(word, known)
+    return f"; did you mean {near}?" if near else ""
 
 
 @contextmanager

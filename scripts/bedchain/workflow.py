@@ -2,17 +2,21 @@
 """The case of a run, its keys, and the files that a rule depends on, for the Snakefile."""
 
 import ast
-from collections.abc import Mapping
+from collections.abc import Collection, Mapping, Sequence
 from functools import cache
 from pathlib import Path
 from typing import Any
 
 from bedchain.case.load import load_case, with_new_names
+from bedchain.case.names import case_name_problem, is_name
 from bedchain.case.parameters import solver_parameters
-from bedchain.case.presets import preset_named, with_preset
+from bedchain.case.presets import preset_named, read_presets, with_preset
 from bedchain.case.scene_checks import used_keys
 from bedchain.case.schema import Case, load_schema
-from bedchain.errors import UserError, report_user_errors
+from bedchain.command_line.peers import peers_options
+from bedchain.command_line.targets import check_options, check_targets
+from bedchain.command_line.words import as_typed, check_words
+from bedchain.errors import UserError, guess, report_user_errors
 from bedchain.trajectory.archive import SIMULATE, check_archive
 
 TABLE_SECTIONS = (
@@ -32,6 +36,46 @@ TABLE_SECTIONS = (
 SCRIPTS = Path("scripts")
 LIBRARY = "bedchain"
 CASES = Path("cases")
+
+
+def words_or_exit(config: Mapping[str, Any], typed: Sequence[str] | None) -> dict[str, Any]:
+    """Words of ``--config``, as typed and checked, or one clear message and the end of snakemake.
+
+    Parameters
+    ----------
+    config : mapping of str to value
+        Snakemake's.
+    typed : sequence of str, optional
+        The words after ``--config`` as they were typed.
+    """
+    with report_user_errors():
+        check_words(words := as_typed(config, typed), typed)
+        return words
+
+
+def options_or_exit(options: Sequence[str], cores: int | None, jobs: int | None) -> None:
+    """`check_options`; on an error its message, and snakemake ends before any job."""
+    with report_user_errors():
+        check_options(options, cores, jobs)
+
+
+def targets_or_exit(
+    targets: Collection[str], words: Mapping[str, Any], rules: Collection[str], folders: Collection[str]
+) -> None:
+    """`check_targets`; on an error its message, and snakemake ends before any job."""
+    with report_user_errors():
+        check_targets(targets, words, rules, case_names(), folders)
+
+
+def peers_or_exit(option: object) -> str:
+    """`peers_options` of ``--config peers=``; on an error its message, and snakemake ends before any job."""
+    with report_user_errors():
+        return peers_options(option, case_names())
+
+
+def case_names() -> list[str]:
+    """Folders of ``cases/`` with a case file, sorted."""
+    return sorted(file.parent.name for file in CASES.glob("*/case.yaml"))
 
 
 def preset_name(config: Mapping[str, Any]) -> str | None:
@@ -54,15 +98,16 @@ def case_or_exit(name: str, preset: str | None = None) -> Case:
     Raises
     ------
     SystemExit
-        Code 1, where there is no such case or preset, the case's file has problems, or the two do not go
-        together.
+        Code 1, where there is no such case or preset, a name cannot be one, the case's file has problems, or
+        the two do not go together.
     """
     with report_user_errors():
-        known = sorted(file.parent.name for file in CASES.glob("*/case.yaml"))
-        if name not in known:
-            raise UserError(
-                f"there is no case {name!r}: take --config case=NAME with one of {', '.join(known)}"
-            )
+        known = case_names()
+        if name not in known and is_name(name):
+            message = f"there is no case {name!r}: take --config case=NAME with one of {', '.join(known)}"
+            raise UserError(message + guess(name, known))
+        if problem := case_name_problem(name, known, read_presets()):
+            raise UserError(problem)
         case = load_case(CASES / name / "case.yaml")
         preset = preset or case.get("preset")
         return with_preset(case, preset_named(preset)) if preset else case

@@ -146,6 +146,10 @@ def _missing(path: str, part: Schema, line: int | None) -> Problem:
     return Problem(path, "is missing", f"add it: {part['description']}", line)
 
 
+DECIMAL = {
+    "integer": "write an integer in decimal digits, such as 12",
+    "number": "write it in decimal digits, such as 12, 0.5 or 1.5e-3",
+}
 LIMITS = {
     "minimum": "at least {}",
     "maximum": "at most {}",
@@ -164,6 +168,8 @@ def _wrong_value(error: ValidationError) -> tuple[str, str]:
     limit = ", ".join(map(str, limit)) if isinstance(limit, list) else limit
     rule = LIMITS.get(str(error.validator), "").format(limit)
     meaning = f" ({part['description']})" if "description" in part else ""
+    if error.validator == "type" and (other := _other_kind(part["type"], error.instance)):
+        return other[0], other[1] + meaning
     if not rule:
         return error.message, f"see the schema{meaning}"
     return f"{_short(error.instance)} is not {rule}", f"give a value {rule}{meaning}"
@@ -172,6 +178,15 @@ def _wrong_value(error: ValidationError) -> tuple[str, str]:
 def _short(value: Any) -> str:
     text = repr(value)
     return text if len(text) <= MOST_LETTERS else f"{text[:MOST_LETTERS]}... ({len(text)} characters)"
+
+
+def _other_kind(wanted: str, value: Any) -> tuple[str, str] | None:
+    """Fault and remedy of text where a number is expected, or of a number where text is."""
+    if wanted in DECIMAL and isinstance(value, str):
+        return f"{value!r} is not a number", DECIMAL[wanted]
+    if wanted == "string" and isinstance(value, int | float) and not isinstance(value, bool):
+        return f"{value} is not text", "put it in quotes"
+    return None
 
 
 def _join(path: str, name: str) -> str:

@@ -10,16 +10,18 @@ from pathlib import Path
 from typing import Any
 
 from bedchain.case.checks import physical_problems
+from bedchain.case.names import NAME_RULE, is_name
 from bedchain.case.scene_checks import checked_keys
 from bedchain.case.schema import Case, load_schema
-from bedchain.case.strict_yaml import read_yaml
-from bedchain.errors import CaseError, UserError
+from bedchain.case.strict_yaml import Lines, read_yaml
+from bedchain.errors import CaseError, UserError, guess
 from bedchain.physics.whole_numbers import ratio
 
 PRESETS = Path("cases/presets.yaml")
 MADE_BY = "snakemake tradeoff measures presets and writes results/<case>/presets.yaml"
 SETTINGS = ("cell_m", "lag_s", "model")
 MEASURED = ("cost_s", "error_floors")
+OTHERS = ("density_floors", "measured_on")
 LEVEL_DIAMETERS = 0.5  # an archive keeps positions to half a diameter: cells of whole levels are exact
 
 
@@ -70,10 +72,10 @@ def read_presets(file: Path = PRESETS) -> dict[str, Preset]:
     """
     if not file.exists():
         return {}
-    content, _ = read_yaml(file)
+    content, lines = read_yaml(file)
     if not isinstance(content, dict):
         raise UserError(f"{file} holds no presets; {MADE_BY}")
-    return {name: _preset(file, name, given) for name, given in content.items()}
+    return {name: _preset(file, name, given, lines) for name, given in content.items()}
 
 
 def preset_named(name: str, file: Path = PRESETS) -> Preset:
@@ -97,7 +99,8 @@ def preset_named(name: str, file: Path = PRESETS) -> Preset:
     if not presets:
         raise UserError(f"there is no preset {name!r}: {file} holds no presets; {MADE_BY}")
     if name not in presets:
-        raise UserError(f"there is no preset {name!r} in {file}: take one of {', '.join(presets)}")
+        known = ", ".join(presets)
+        raise UserError(f"there is no preset {name!r} in {file}: take one of {known}{guess(name, presets)}")
     return presets[name]
 
 
@@ -141,20 +144,31 @@ def with_preset(case: Case, preset: Preset, file: Path = PRESETS) -> Case:
     return changed
 
 
-def _preset(file: Path, name: str, given: Any) -> Preset:
+def _preset(file: Path, name: str, given: Any, lines: Lines) -> Preset:
     if not isinstance(given, dict):
-        raise UserError(f"{file}, {name}: {given!r} is no preset, which has {', '.join(SETTINGS)}; {MADE_BY}")
+        place = f"{file}, line {lines[name]}, {name}"
+        raise UserError(f"{place}: {given!r} is no preset, which has {', '.join(SETTINGS)}; {MADE_BY}")
+    if not is_name(name):
+        raise UserError(f"{file}, line {lines[name]}: the name of the preset {name!r} must have {NAME_RULE}")
     known = load_schema()["properties"]["chain"]["properties"]["models"]["items"]["enum"]
-    for key in SETTINGS:
-        value = given.get(key)
-        if not (value in known if key == "model" else is_positive(value)):
-            wanted = f"one of {', '.join(known)}" if key == "model" else "a number above 0"
-            raise UserError(f"{file}, {name}: {key} is {value!r}, not {wanted}; {MADE_BY}")
-    measured = {key: float(given[key]) for key in MEASURED if is_positive(given.get(key))}
+    for key in dict.fromkeys((*SETTINGS, *given)):
+        place = f"{file}, line {lines.get(f'{name}.{key}', lines[name])}, {name}"
+        _check_setting(place, key, given.get(key), known)
+    measured = {key: float(given[key]) for key in MEASURED if key in given}
     about = str(given.get("measured_on", ""))
     return Preset(
         name, float(given["cell_m"]), float(given["lag_s"]), given["model"], **measured, measured_on=about
     )
+
+
+def _check_setting(place: str, key: str, value: Any, models: list[str]) -> None:
+    keys = (*SETTINGS, *MEASURED, *OTHERS)
+    if key not in keys:
+        raise UserError(f"{place}: {key} is an unknown key{guess(key, keys)}; known are {', '.join(keys)}")
+    if key in OTHERS or (value in models if key == "model" else is_positive(value)):
+        return
+    wanted = f"one of {', '.join(models)}" if key == "model" else "a number above 0"
+    raise UserError(f"{place}: {key} is {value!r}, not {wanted}; {MADE_BY}")
 
 
 def is_positive(value: Any) -> bool:

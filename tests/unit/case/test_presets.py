@@ -62,6 +62,8 @@ def test_without_presets_the_study_that_makes_them_is_named(tmp_path):
         ("lag_s", -0.2, "lag_s is -0.2, not a number above 0"),
         ("lag_s", True, "lag_s is True, not a number above 0"),
         ("model", "statics", "model is 'statics', not one of static, dynamic"),
+        ("cost_s", "10 ms", "cost_s is '10 ms', not a number above 0"),
+        ("lagg_s", 0.2, "lagg_s is an unknown key; did you mean lag_s"),
     ],
 )
 def test_a_setting_that_cannot_be_is_named(tmp_path, key, value, said):
