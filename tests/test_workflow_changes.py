@@ -176,7 +176,7 @@ def test_an_edited_module_runs_the_rules_whose_scripts_import_it_and_what_follow
 
 BAD_VALUES = [
     ("bed", "widht_m", "0.1", "did you mean width_m?"),
-    ("particles", "diameter_m", "-1.0e-3", "above 0"),
+    ("particles", "diameter_m", "-1.0e-3", "at least 1e-06"),
     ("bed", "width_m", "5.0e-4", "narrower than a particle"),
     ("time", "dem_step_s", "1.0e-4", "Rayleigh"),
     ("time", "frame_interval_s", "0.02501", "multiple of time.dem_step_s"),
