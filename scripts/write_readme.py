@@ -16,7 +16,7 @@ import pandas as pd
 from PIL import Image
 
 from bedchain.errors import UserError
-from bedchain.files import atomic_file, write_csv
+from bedchain.files import atomic_file, write_csv, write_text
 from bedchain.stage import LOG, stage
 from bedchain.studies.readme import case_tables, study_tables
 from bedchain.studies.readme.marks import filled
@@ -96,8 +96,7 @@ def write_readme(case: str | None, study: str | None, root: Path = Path()) -> No
     for readme in sorted(file for pattern in READMES for file in root.glob(pattern)):
         text = readme.read_text(encoding="utf-8")
         if (new := filled(text, root)) != text:
-            with atomic_file(readme) as temporary:
-                temporary.write_text(new, encoding="utf-8")
+            write_text(readme, new)
             LOG.info("%s: tables written", readme)
 
 

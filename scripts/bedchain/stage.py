@@ -9,7 +9,7 @@ from dataclasses import is_dataclass
 from pathlib import Path
 from typing import Any
 
-from bedchain.errors import DataError, UserError, report_user_errors
+from bedchain.errors import report_user_errors
 
 LOG = logging.getLogger("bedchain")
 
@@ -36,10 +36,7 @@ def stage(log: Path | str) -> Iterator[None]:
     LOG.setLevel(logging.INFO)
     try:
         with report_user_errors(log):
-            try:
-                yield
-            except DataError as error:
-                raise UserError(str(error)) from error
+            yield
     except Exception:
         LOG.exception("failed")
         raise
