@@ -1,5 +1,19 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""The trajectory: one array of all frames of a DEM run, and its metadata."""
+"""The trajectory: one array of all frames of a bed, and its metadata.
+
+``trajectory.npy`` is float32 (n_frames, n_rows, n_particles). ``trajectory.json`` names the rows in
+``columns``: x, z [m], vx, vz [m/s] always, in this order, then y [m] where the case keeps the third axis,
+from 0 to ``depth_m``. Lengths start at the bed's left, front, bottom corner. Velocities are NaN where the
+source has none.
+
+A particle has the same place in all frames. Where particles come and go, a particle that is not in a frame
+is NaN in all rows of it, and ``complete`` of the metadata is false (true where it is missing); positions
+outside the bed are then stored as they are. ``frame_interval_s`` is null where the times are uneven.
+
+Imported frames also leave ``particles.npz`` beside the trajectory: ``ids`` (n_particles,) int64, ascending,
+and where the source has them ``type`` int32 and ``radius_m`` float32, which do not change in time. Of a
+simulated bed the file does not exist: all its particles are alike.
+"""
 
 import json
 import logging
@@ -13,7 +27,13 @@ import numpy as np
 from tqdm import tqdm
 
 from bedchain.errors import UserError
-from bedchain.files import atomic_file, path_inside, refuse_special_file, write_npy_header, write_text
+from bedchain.files import (
+    atomic_file,
+    path_inside,
+    refuse_special_file,
+    write_npy_header,
+    write_text,
+)
 from bedchain.trajectory.dumps import frame_of, listed, read_dump
 
 LOG = logging.getLogger(__name__)
@@ -219,14 +239,14 @@ def open_trajectory(path: Path, metadata_path: Path) -> tuple[np.ndarray, dict[s
 
     Returns
     -------
-    (n_frames, 4, n_particles) ndarray of float32
-        Rows x, z [m], vx, vz [m/s].
+    (n_frames, n_rows, n_particles) ndarray of float32
+        Rows x, z [m], vx, vz [m/s], then those that ``columns`` of the metadata names.
     dict
         As `trajectory_metadata`.
     """
     metadata = json.loads(metadata_path.read_text())
     store = np.load(path, mmap_mode="r")
-    shape = (len(metadata["times_s"]), len(STORED), metadata["number"])
+    shape = (len(metadata["times_s"]), len(metadata["columns"]), metadata["number"])
     if store.shape != shape:
         raise UserError(f"{path} has the shape {store.shape}, {shape} expected: delete it and run again")
     return store, metadata
