@@ -9,6 +9,7 @@ both coordinates of a particle.
 import lzma
 from collections.abc import Iterable, Iterator
 from pathlib import Path
+from typing import IO
 
 import numpy as np
 from numpy.typing import NDArray
@@ -18,6 +19,7 @@ from bedchain.files import atomic_file
 
 # no context between bytes: neighbours in the file are unrelated particles
 FILTERS = [{"id": lzma.FILTER_LZMA2, "preset": 6, "lc": 0, "lp": 0, "pb": 0}]
+PART_BYTES = 1 << 20
 Levels = NDArray[np.uint16]
 
 
@@ -92,16 +94,14 @@ def read_levels(source: Path, n_frames: int, number: int) -> Iterator[Levels]:
     Raises
     ------
     UserError
-        The file holds fewer or more frames.
+        The file is missing or damaged, or holds fewer or more frames.
     """
-    before = last = np.zeros((2, number), np.uint16)
-    with lzma.open(source, "rb") as stream:
+    before: Levels | np.uint16 = np.uint16(0)
+    last: Levels | np.uint16 = np.uint16(0)
+    with _unpacked(source) as stream:
         for at in range(n_frames):
-            try:
-                data = stream.read(4 * number)
-            except (EOFError, lzma.LZMAError):
-                data = b""
-            if len(data) < 4 * number:
+            data = _take(stream, 4 * number)
+            if data is None or len(data) < 4 * number:
                 raise UserError(f"{source} ends at frame {at} of {n_frames}: fetch it again")
             low, high = np.frombuffer(data, np.uint8).reshape(2, 2, number).astype(np.uint16)
             folded = low | (high << 8)
@@ -109,8 +109,30 @@ def read_levels(source: Path, n_frames: int, number: int) -> Iterator[Levels]:
             levels = change + last + (last - before if at > 1 else np.uint16(0))
             before, last = last, levels
             yield levels
-        if stream.read(1):
+        rest = _take(stream, 1)
+        if rest is None:
+            raise UserError(f"{source} is damaged behind its last frame: fetch it again")
+        if rest:
             raise UserError(f"{source} holds more than {n_frames} frames of {number}: fetch it again")
+
+
+def _unpacked(source: Path) -> IO[bytes]:
+    try:
+        return lzma.open(source, "rb")
+    except OSError as error:
+        raise UserError(f"{source} cannot be read ({error.strerror}): fetch it again") from error
+
+
+def _take(stream: IO[bytes], size: int) -> bytes | None:
+    """So many bytes, fewer at the end, None at damage; in parts, so that a wrong size takes no memory."""
+    parts = []
+    try:
+        while size > 0 and (part := stream.read(min(size, PART_BYTES))):
+            parts.append(part)
+            size -= len(part)
+    except (EOFError, lzma.LZMAError, MemoryError):  # of a header that asks for gigabytes
+        return None
+    return b"".join(parts)
 
 
 def with_velocities(

@@ -55,6 +55,27 @@ def test_a_file_that_is_cut_off_or_goes_on_is_refused(tmp_path):
         list(read_levels(whole, 6, 400))
 
 
+def test_a_file_without_its_last_bytes_is_refused(tmp_path):
+    """All frames are there, but not the checksum that says that they are right."""
+    whole = tmp_path / "p.xz"
+    write_levels(iter(drawn_levels(6, 400)), whole)
+    whole.write_bytes(whole.read_bytes()[:-4])
+    with pytest.raises(UserError, match="damaged behind its last frame"):
+        list(read_levels(whole, 6, 400))
+
+
+def test_a_number_of_particles_that_no_memory_holds_is_refused(tmp_path):
+    whole = tmp_path / "p.xz"
+    write_levels(iter(drawn_levels(6, 400)), whole)
+    with pytest.raises(UserError, match="ends at frame 0 of 6"):
+        next(read_levels(whole, 6, 10**15))
+
+
+def test_a_missing_file_is_a_sentence(tmp_path):
+    with pytest.raises(UserError, match="cannot be read"):
+        next(read_levels(tmp_path / "p.xz", 6, 400))
+
+
 def test_rounded_positions_stay_in_their_cell_and_on_their_side():
     lines = np.arange(1, 270) * LEVEL
     drawn = np.random.default_rng(3).uniform(0, 0.27, 20000)
