@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """The cell of every particle in every frame: results/<case>/cells.npz."""
 
+from dataclasses import dataclass
 from pathlib import Path
 
 import numpy as np
@@ -11,7 +12,32 @@ from bedchain.trajectory.grid import Grid
 from bedchain.trajectory.store import BedFiles
 
 
-def assign_cells(bed: BedFiles, cells: Path, columns: int, rows: int, diameter_m: float) -> None:
+@dataclass(frozen=True)
+class Division:
+    """How the bed is divided into cells; see `bedchain.trajectory.grid.Grid`.
+
+    Attributes
+    ----------
+    columns, rows, layers : int
+        Cells along the width, the height and the depth, or along what `form` has in their place [1].
+    form : {"boxes", "rings", "sectors"}
+    axis : {"vertical", "horizontal"}
+        Of rings and sectors.
+    thickness_m : float
+        Depth of the bed [m].
+    """
+
+    columns: int
+    rows: int
+    layers: int = 1
+    form: str = "boxes"
+    axis: str = "vertical"
+    thickness_m: float = 0.0
+
+
+def assign_cells(
+    bed: BedFiles, cells: Path, division: Division, diameter_m: float, outside: str = "refuse"
+) -> None:
     """Lay a grid over the bed and note where every particle is.
 
     Parameters
@@ -19,10 +45,11 @@ def assign_cells(bed: BedFiles, cells: Path, columns: int, rows: int, diameter_m
     bed : BedFiles
     cells : Path
         Gets int32 (n_frames, n_particles), with times and the grid.
-    columns, rows : int
-        Cells along the width and the height [1].
+    division : Division
     diameter_m : float
         Particle diameter, the finest length that the data resolve [m].
+    outside : {"refuse", "exit"}
+        Whether particles may leave the bed.
 
     Raises
     ------
@@ -30,11 +57,22 @@ def assign_cells(bed: BedFiles, cells: Path, columns: int, rows: int, diameter_m
         A position outside the bed, or cells smaller than a particle.
     """
     values, described = bed.open()
-    grid = Grid(described["width_m"], described["height_m"], columns, rows)
+    grid = Grid(
+        described["width_m"], described["height_m"], division.columns, division.rows,
+        division.thickness_m, division.layers, form=division.form, axis=division.axis,
+    )  # fmt: skip
     grid.check_resolution(diameter_m)
-    write_cells(values, np.array(described["times_s"]), grid, cells)
-    size = f"{1000 * grid.cell_width_m:g} mm x {1000 * grid.cell_height_m:g} mm"
+    y_row = described["columns"].index("y") if "y" in described["columns"] else None
+    complete = described.get("complete", True)
+    gone = write_cells(values, np.array(described["times_s"]), grid, cells, outside, y_row, complete)
+    lengths = zip(grid.lengths_m, grid.counts, strict=True)
+    size = " x ".join(
+        f"{1000 * length / n:g} mm" for length, n in list(lengths)[: 3 if grid.layers > 1 else 2]
+    )
     LOG.info("%d cells of %s, %d frames, in %s", grid.n_cells, size, len(values), cells)
+    if gone:
+        share = gone / (values.shape[0] * values.shape[2])
+        LOG.info("%.3g %% of particles times frames are not in the bed (outside: %s)", 100 * share, outside)
 
 
 if rule := globals().get("snakemake"):

@@ -19,7 +19,8 @@ rule assign_cells:
     conda:
         "../envs/python.yaml"
     params:
-        **pick(CASE, "cells", "particles.diameter_m"),
+        **pick(CASE, "cells", "particles.diameter_m", "bed.thickness_m"),
+        outside=CASE.get("outside", "refuse"),
     script:
         "assign_cells.py"
 

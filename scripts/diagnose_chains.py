@@ -121,7 +121,7 @@ def diagnose_chains(
 
 def path_rows(source: str, frames: Frames, grid: Grid, top: int, lags: Sequence[int]) -> list[Metric]:
     """Arrivals at the top and dispersion coefficients of particles followed from frame to frame."""
-    rows = [arrival_row(source, frames, grid, top)]
+    rows = [arrival_row(source, frames, grid, top)] if grid.rows_are_heights else []
     return rows + dispersion_rows(source, frames, grid, lags[::DISPERSION_STRIDE])
 
 

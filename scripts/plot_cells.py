@@ -11,7 +11,7 @@ from bedchain.figures.style import SINGLE_COLUMN_IN, FigureFiles, close_frame, d
 from bedchain.files import write_csv
 from bedchain.stage import run_stage
 from bedchain.trajectory.cell_store import frame_at
-from bedchain.trajectory.grid import Grid
+from bedchain.trajectory.grid import OUTSIDE, Grid
 from bedchain.trajectory.realisations import open_bed
 from bedchain.trajectory.store import BedFiles
 
@@ -39,15 +39,21 @@ def plot_cells(bed: BedFiles, files: FigureFiles, time_s: float, diameter_m: flo
     run = open_bed(bed)
     frame = frame_at(run.times_s, time_s)
     seen = run.frames(run.grid, slice(frame, frame + 1))
-    x, z = (np.asarray(places[0], float) for places in (seen.x_m, seen.z_m))
-    held = np.bincount(seen.cells[0], minlength=run.grid.n_cells)
+    inside = seen.cells[0] != OUTSIDE
+    y_m = None if seen.y_m is None else np.asarray(seen.y_m[0], float)[inside]
+    x, z = (np.asarray(at[0], float)[inside] for at in (seen.x_m, seen.z_m))
+    x, z = run.grid.picture(x, z, y_m)
+    held = np.bincount(seen.cells[0][inside], minlength=run.grid.n_cells)
+    grid = run.grid.shown
     with figure_style():
-        shape = min(run.grid.height_m / run.grid.width_m, 3.0)
+        shape = min(grid.height_m / grid.width_m, 3.0)
         figure, (whole, corner) = plt.subplots(
             1, 2, figsize=(SINGLE_COLUMN_IN, max(2.6, min(1.45 * shape, 4.6))), width_ratios=[1, 1]
         )
-        _draw_whole_bed(whole, run.grid, x, z, diameter_m, colour)
-        _draw_corner(corner, whole, run.grid, x, z, diameter_m, colour)
+        _draw_whole_bed(whole, grid, x, z, diameter_m, colour)
+        _draw_corner(corner, whole, grid, x, z, diameter_m, colour)
+        whole.set(xlabel=run.grid.labels[0], ylabel=run.grid.labels[1])
+        corner.set_xlabel(run.grid.labels[0].split(" (")[0])
         whole.set_title(f"bed at {run.times_s[frame]:.2f} s")
         corner.set_title("its lower left corner")
         for axes in (whole, corner):
@@ -76,8 +82,8 @@ def cell_table(grid: Grid, held: np.ndarray, time_s: float) -> pd.DataFrame:
     return pd.DataFrame(
         {
             "cell": number,
-            "column": number % grid.columns,
-            "row": number // grid.columns,
+            "column": grid.indices(number)[0],
+            "row": grid.indices(number)[1],
             "x_m": grid.centres_m[:, 0],
             "z_m": grid.centres_m[:, 1],
             "particles_1": held,

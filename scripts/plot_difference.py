@@ -69,9 +69,11 @@ def draw_maps(
     files: FigureFiles
 ) -> None:  # fmt: skip
     """One map a moment in one colour scale, with the distance of both distributions above it."""
-    difference = 100 * (shares[0] - shares[1])
+    static, dynamic = (grid.projected(share) for share in shares)
+    (across, up), grid = grid.labels, grid.shown
+    difference = 100 * (static - dynamic)
     limit = float(np.quantile(np.abs(difference[difference != 0]), 1 - TOP_SHARE))
-    height = _height_to_show(np.maximum(*shares), grid)
+    height = _height_to_show(np.maximum(static, dynamic), grid)
     panel_in = (DOUBLE_COLUMN_IN - BESIDE_IN) / len(moments) - BETWEEN_IN
     tall = min(height / grid.width_m * panel_in, TALLEST_IN)
     figure, panels = plt.subplots(
@@ -83,8 +85,8 @@ def draw_maps(
         axes.set_xticklabels(["0", f"{grid.width_m:g}"])
         axes.set_title(f"{moment:.2f} s\ndiffer by {100 * distance:.1f} %")
         close_frame(axes)
-    panels[0, 0].set_ylabel("z [m]")
-    figure.supxlabel("x [m]", fontsize=8)
+    panels[0, 0].set_ylabel(up)
+    figure.supxlabel(across, fontsize=8)
     figure.text(0.995, 0.01, f"mean of the moments: {100 * distances.mean():.1f} %", ha="right", fontsize=8)
     bar = figure.colorbar(mesh, ax=panels, extend="both", aspect=22, pad=0.015)
     bar.set_label("static less dynamic\n[% of the batch in a cell]")
@@ -142,8 +144,8 @@ def difference_table(
         {
             "time_s": np.repeat(moments, grid.n_cells),
             "cell": np.tile(number, n),
-            "column": np.tile(number % grid.columns, n),
-            "row": np.tile(number // grid.columns, n),
+            "column": np.tile(grid.indices(number)[0], n),
+            "row": np.tile(grid.indices(number)[1], n),
             "x_m": np.tile(grid.centres_m[:, 0], n),
             "z_m": np.tile(grid.centres_m[:, 1], n),
             "static_share_1": static,

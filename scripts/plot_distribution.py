@@ -86,7 +86,8 @@ def draw_moments(
     model: str, colour_map: str, files: FigureFiles
 ) -> None:  # fmt: skip
     """Two rows of maps, the DEM above the chain, one column a moment, with one colour bar for all."""
-    both = 100 * np.array([observed, expected])
+    both = 100 * grid.projected(np.array([observed, expected]))
+    (across, up), grid = grid.labels, grid.shown
     norm = PowerNorm(GAMMA, 0, np.quantile(both[both > 0], 1 - TOP_SHARE))
     height = _height_to_show(both, grid)
     panel_in = (DOUBLE_COLUMN_IN - BESIDE_IN) / len(moments) - BETWEEN_IN
@@ -109,8 +110,8 @@ def draw_moments(
         panels[1, column].set_title(notes[column], fontsize=6, pad=3)
         panels[1, column].set_xticklabels(["0", f"{grid.width_m:g}"])
     for axes, name in zip(panels[:, 0], ("DEM", f"{model} chain"), strict=True):
-        axes.set_ylabel(f"{name}\nz [m]")
-    figure.supxlabel("x [m]", fontsize=8)
+        axes.set_ylabel(f"{name}\n{up}")
+    figure.supxlabel(across, fontsize=8)
     bar = figure.colorbar(mesh, ax=panels, extend="max", aspect=35, shrink=0.9, pad=0.015)
     bar.set_label("share of the batch in a cell [%]")
     bar.outline.set_linewidth(0.5)
@@ -148,8 +149,8 @@ def distribution_table(grid: Grid, moments: np.ndarray, sources: dict[str, np.nd
                 "time_s": moment,
                 "source": source,
                 "cell": number,
-                "column": number % grid.columns,
-                "row": number // grid.columns,
+                "column": grid.indices(number)[0],
+                "row": grid.indices(number)[1],
                 "x_m": grid.centres_m[:, 0],
                 "z_m": grid.centres_m[:, 1],
                 "share_1": share,

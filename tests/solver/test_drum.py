@@ -10,7 +10,7 @@ import pandas as pd
 import pytest
 import yaml
 
-from assign_cells import assign_cells
+from assign_cells import Division, assign_cells
 from bedchain.chains.registry import ModelSettings, load
 from bedchain.dem import run
 from bedchain.dem.parameter_files import write_parameters
@@ -87,7 +87,7 @@ def drum(small, no_openfoam):
     run.run_dem(folder, END, 2.0, 1)
     bed = files_of(folder)
     parse_dumps(folder / "dem.json", bed.trajectory, bed.metadata, DIAMETER, DIAMETER, progress=False)
-    assign_cells(bed, bed.cells, 4, 4, 3e-3)
+    assign_cells(bed, bed.cells, Division(4, 4), 3e-3)
     return folder
 
 

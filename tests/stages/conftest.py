@@ -6,7 +6,7 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 
-from assign_cells import assign_cells
+from assign_cells import Division, assign_cells
 from bedchain.chains.registry import ModelSettings
 from bedchain.comparison.curves import ChainFiles
 from bedchain.measures.batch import Batch
@@ -55,7 +55,7 @@ def bed(tmp_path_factory, frames):
     paths.transitions = {model: folder / f"transitions_{model}.npz" for model in MODELS}
     paths.chains = {model: folder / f"chain_{model}.npz" for model in MODELS}
     parse_dumps(paths.dem, paths.trajectory, paths.metadata, WIDTH, HEIGHT, progress=False)
-    assign_cells(BedFiles(paths.trajectory, paths.metadata), paths.cells, COLUMNS, ROWS, DIAMETER)
+    assign_cells(BedFiles(paths.trajectory, paths.metadata), paths.cells, Division(COLUMNS, ROWS), DIAMETER)
     paths.files = BedFiles(paths.trajectory, paths.metadata, paths.cells)
     paths.chain_files = ChainFiles(list(MODELS), list(paths.chains.values()))
     for model in MODELS:

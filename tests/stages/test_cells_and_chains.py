@@ -5,7 +5,7 @@ import numpy as np
 import pandas as pd
 import pytest
 
-from assign_cells import assign_cells
+from assign_cells import Division, assign_cells
 from bedchain.chains import registry
 from bedchain.chains.registry import ModelSettings
 from bedchain.errors import DataError, UserError
@@ -63,7 +63,7 @@ def test_cells_file_reads_with_numpy_alone(bed):
 
 def test_cells_smaller_than_a_particle_are_refused(bed, tmp_path):
     with pytest.raises(DataError, match="columns"):
-        assign_cells(bed.files, tmp_path / "c.npz", 100, ROWS, DIAMETER)
+        assign_cells(bed.files, tmp_path / "c.npz", Division(100, ROWS), DIAMETER)
     assert list(tmp_path.iterdir()) == []
 
 

@@ -7,7 +7,7 @@ import numpy as np
 import pandas as pd
 import pytest
 
-from assign_cells import assign_cells
+from assign_cells import Division, assign_cells
 from bedchain.chains.registry import ModelSettings
 from bedchain.comparison.diagnostics import COLUMNS as HEADER
 from bedchain.errors import UserError
@@ -54,7 +54,7 @@ def walk(tmp_path_factory):
     times = np.round(np.arange(FRAMES) * LAG, 6)
     dem = write_run(folder, np.array(frames), times, ACROSS * SIZE, UP * SIZE)
     parse_dumps(dem, files.trajectory, files.metadata, ACROSS * SIZE, UP * SIZE, progress=False)
-    assign_cells(files, files.cells, ACROSS, UP, 1e-3)
+    assign_cells(files, files.cells, Division(ACROSS, UP), 1e-3)
     transitions = {model: folder / f"transitions_{model}.npz" for model in MODELS}
     for model, path in transitions.items():
         build_transitions(files, path, model, "pooled", LAG, LEARN)

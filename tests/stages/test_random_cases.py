@@ -12,7 +12,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 import run_chain as run_chain_stage
-from assign_cells import assign_cells
+from assign_cells import Division, assign_cells
 from bedchain.case.load import load_case
 from bedchain.chains.registry import ModelSettings
 from bedchain.comparison.curves import ChainFiles
@@ -106,7 +106,7 @@ def through_all_stages(folder, case):
     comparison = comparison._replace(end_s=case["comparison"]["end_s"])
     splits = Splits(**case["mixing"])
     batch = Batch(case["figures"]["batch_height_m"], case["figures"]["moments_s"])
-    assign_cells(bed, bed.cells, **case["cells"], diameter_m=case["particles"]["diameter_m"])
+    assign_cells(bed, bed.cells, Division(**case["cells"]), diameter_m=case["particles"]["diameter_m"])
     for name in names:
         options = chain.get(name, {})
         transitions = folder / f"transitions_{name}.npz"

@@ -96,17 +96,6 @@ def lag_fits(
         yield "chain.lag_s", wrong, "take a shorter lag or longer windows; the dynamic chain needs two lags"
 
 
-@reads("cells.columns", "cells.rows", "bed.width_m", "bed.height_m", "particles.diameter_m")
-def cells_hold_particles(
-    columns: int, rows: int, width: float, height: float, diameter: float
-) -> Iterator[Finding]:
-    """Refuse cells narrower than a particle."""
-    for name, cells, length in (("columns", columns, width), ("rows", rows, height)):
-        if ratio(length, diameter) < cells:
-            wrong = f"{cells} cells over {length:g} m are narrower than a particle ({diameter:g} m)"
-            yield f"cells.{name}", wrong, f"take at most {int(ratio(length, diameter))}"
-
-
 @reads("mixing.split_x_m", "mixing.split_z_m", "figures.batch_height_m", "bed.width_m", "bed.height_m")
 def splits_lie_in_bed(
     split_x: float, split_z: float, batch: float, width: float, height: float

@@ -5,6 +5,7 @@ from typing import Any
 
 from bedchain.case import (  # noqa: F401
     bed_checks,
+    cell_checks,
     chain_checks,
     gas_checks,
     scene_checks,
@@ -13,6 +14,9 @@ from bedchain.case import (  # noqa: F401
 )
 from bedchain.case.check_registry import CHECKS
 from bedchain.errors import Problem
+
+# where a case says nothing of it
+FORM_OF_CELLS = {"cells.form": "boxes", "cells.axis": "vertical", "cells.layers": 1}
 
 
 def physical_problems(case: dict[str, Any], broken: set[str], lines: dict[str, int]) -> list[Problem]:
@@ -27,7 +31,7 @@ def physical_problems(case: dict[str, Any], broken: set[str], lines: dict[str, i
     lines : dict of str to int
         Dotted key -> line in the file.
     """
-    values = _by_dotted_key(case)
+    values = FORM_OF_CELLS | _by_dotted_key(case)
     refused = {key.split("[")[0] for key in broken}
     problems = []
     for keys, check in CHECKS:

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Checks of the size of a case: lengths in metres; steps, frames, segments and cells that can be counted."""
+"""Checks of the size of a case: lengths in metres; steps, frames and segments that can be counted."""
 
 from collections.abc import Iterator
 
@@ -12,7 +12,6 @@ LARGEST_PARTICLE_M = 0.1
 MOST_STEPS = 2**31 - 1  # that a run of LIGGGHTS can count
 MOST_FRAMES = 100_000
 MOST_SEGMENTS = 9_999  # their folders have four digits
-MOST_CELLS = 1_000_000  # of a chain
 
 
 @reads("bed.width_m", "bed.height_m", "bed.thickness_m", "particles.diameter_m")
@@ -48,11 +47,3 @@ def steps_can_be_counted(
         if (number := ratio(length, unit)) > most:
             wrong = f"{length:g} s are {float(number):.3g} {items} of {unit:g} s, more than {most}"
             yield f"time.{name}", wrong, f"take at most {most * unit:.3g} s, or longer ones"
-
-
-@reads("cells.columns", "cells.rows")
-def cells_can_be_counted(columns: int, rows: int) -> Iterator[Finding]:
-    """Refuse more cells than a chain can have."""
-    if columns * rows > MOST_CELLS:
-        wrong = f"{columns} x {rows} cells are {columns * rows}, more than {MOST_CELLS}"
-        yield "cells.rows", wrong, f"take at most {MOST_CELLS // columns} rows, or fewer columns"

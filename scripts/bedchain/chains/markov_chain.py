@@ -18,6 +18,9 @@ from bedchain.measures import mixing
 from bedchain.trajectory.frames import Frames
 from bedchain.trajectory.grid import Grid
 
+# what a file of a chain says of its grid beside bed_m and grid
+DEEP = ("depth_m", "layers", "form", "axis")
+
 
 @dataclass(frozen=True)
 class MarkovChain:
@@ -189,6 +192,7 @@ class MarkovChain:
         return edges | {
             "bed_m": np.array([grid.width_m, grid.height_m]),
             "grid": np.array([grid.columns, grid.rows]),
+            **{name: np.array(value) for name, value in grid.arrays().items() if name in DEEP},
             "step": np.array([self.lag, self.history, self.fallback]),
             "lag_s": np.array(self.lag_s),
             "data": self.matrix.data,
@@ -209,8 +213,13 @@ class MarkovChain:
             An array is missing.
         """
         try:
-            width_m, height_m = (float(size) for size in arrays["bed_m"])
-            columns, rows = (int(count) for count in arrays["grid"])
+            flat = dict(
+                zip(
+                    ("width_m", "height_m", "columns", "rows"),
+                    (*arrays["bed_m"], *arrays["grid"]),
+                    strict=True,
+                )
+            )
             lag, history, fallback = (int(number) for number in arrays["step"])
             n_states = arrays["indptr"].size - 1
             classes = VelocityClasses.from_arrays(arrays) if "edges_x" in arrays else None
@@ -219,7 +228,7 @@ class MarkovChain:
             )
             return cls(
                 str(arrays["name"]),
-                Grid(width_m, height_m, columns, rows),
+                Grid.from_arrays(arrays | flat),
                 lag,
                 float(arrays["lag_s"]),
                 matrix,

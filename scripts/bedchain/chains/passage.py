@@ -55,7 +55,7 @@ def top_row(density: NDArray[np.float64], grid: Grid, share: float) -> int:
     int
         At least 1, never the bottom row.
     """
-    by_row = density.reshape(grid.rows, grid.columns).sum(axis=1)
+    by_row = grid.projected(density).reshape(grid.rows, grid.columns).sum(axis=1)
     above = by_row[::-1].cumsum()[::-1]
     high = np.flatnonzero(above <= share)
     return max(1, int(high[0]) if high.size else grid.rows - 1)
@@ -77,7 +77,7 @@ def passage_time(chain: MarkovChain, start: NDArray[np.float64], row: int) -> fl
     float
         [s]; infinite where some may never reach the row, NaN without particles at the bottom.
     """
-    row_of_state = chain.cell_of_state // chain.grid.columns
+    row_of_state = chain.grid.indices(chain.cell_of_state)[1]
     steps = first_passage_steps(chain.matrix, row_of_state >= row)
     at_bottom = np.where(row_of_state == 0, start, 0.0)
     if at_bottom.sum() == 0:
@@ -102,7 +102,7 @@ def arrived(cells: NDArray[np.int32], grid: Grid, row: int) -> NDArray[np.float6
     (n_frames,) array
         Of the particles in the bottom row in the first frame [1]; NaN if there are none.
     """
-    rows = np.asarray(cells)[:, np.asarray(cells[0]) < grid.columns] // grid.columns
+    rows = grid.indices(np.asarray(cells)[:, grid.indices(np.asarray(cells[0]))[1] == 0])[1]
     if rows.shape[1] == 0:
         return np.full(len(rows), np.nan)
     return np.asarray((np.maximum.accumulate(rows, axis=0) >= row).mean(axis=1))

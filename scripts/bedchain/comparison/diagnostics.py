@@ -108,7 +108,7 @@ def time_rows(chain: MarkovChain, start: NDArray[np.float64], least_share: float
             for part, time in times.items()
         ]
     passage = passage_time(chain, start, top)
-    if np.isfinite(passage):
+    if np.isfinite(passage) and chain.grid.rows_are_heights:
         height = top * chain.grid.cell_height_m
         rows.append(metric("first_passage_time", chain.name, passage, "s", height_m=height, **where))
     return rows
@@ -141,7 +141,7 @@ def dispersion_rows(source: str, frames: Frames, grid: Grid, lags: Sequence[int]
     rows = []
     for lag in lags:
         lag_s = lag * frames.interval_s
-        layers = dispersion_by_height(frames.x_m, frames.z_m, grid.z_edges_m, Lag(lag, lag_s))
+        layers = dispersion_by_height(frames.x_m, frames.z_m, grid.heights_m, Lag(lag, lag_s))
         for layer in np.flatnonzero(layers.displacements >= FEWEST_DISPLACEMENTS):
             for column, axis in enumerate("xz"):
                 value, where = layers.dispersion_m2_s[layer, column], {"height_m": layers.height_m[layer]}

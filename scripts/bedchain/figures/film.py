@@ -88,7 +88,7 @@ def in_their_cells(
         [m]
     """
     for cells in paths:
-        row, column = np.divmod(cells, grid.columns)
+        column, row, _ = grid.indices(cells)
         yield (column + shares[0]) * grid.cell_width_m, (row + shares[1]) * grid.cell_height_m
 
 

@@ -105,7 +105,7 @@ def map_colours(name: str) -> Colormap:
 
 
 def draw_cells(axes: Axes, values: np.ndarray, grid: Grid, norm: Normalize, colours: Colormap) -> QuadMesh:
-    """Map of the values of cells, in the proportions of the bed; cells with 0 are white.
+    """Map of the values of cells, in the proportions of the bed; cells with 0 are white (`Grid.projection`).
 
     Parameters
     ----------
@@ -121,7 +121,7 @@ def draw_cells(axes: Axes, values: np.ndarray, grid: Grid, norm: Normalize, colo
     QuadMesh
         For a colour bar.
     """
-    table = np.ma.masked_less_equal(values.reshape(grid.rows, grid.columns), 0)
+    table = np.ma.masked_less_equal(grid.projected(values).reshape(grid.rows, grid.columns), 0)
     mesh = axes.pcolormesh(
         grid.x_edges_m, grid.z_edges_m, table, norm=norm, cmap=colours, rasterized=True, linewidth=0
     )
@@ -181,5 +181,5 @@ def shown_height(cells: np.ndarray, grid: Grid, margin_rows: int = 1) -> float:
     float
         At most the bed's height [m].
     """
-    top = int(cells.max()) // grid.columns + 1 + margin_rows
+    top = int(grid.indices(cells)[1].max()) + 1 + margin_rows
     return min(top, grid.rows) * grid.cell_height_m

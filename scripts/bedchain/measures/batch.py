@@ -36,7 +36,8 @@ def batch_of(grid: Grid, cells: np.ndarray, height_m: float) -> np.ndarray:
     cells : (n_particles,) integer array
         Cell of each particle.
     height_m : float
-        Height of the batch [m], rounded to whole rows, at least one.
+        Height of the batch [m], rounded to whole rows, at least one; in rows that lie along something else
+        than z, the middles of its cells are below it.
 
     Returns
     -------
@@ -48,10 +49,18 @@ def batch_of(grid: Grid, cells: np.ndarray, height_m: float) -> np.ndarray:
     UserError
         The batch is empty.
     """
-    rows = max(1, round(height_m / grid.cell_height_m))
-    batch = cells < rows * grid.columns
+    if grid.rows_are_heights:
+        rows = max(1, round(height_m / grid.cell_height_m))
+        batch = grid.indices(cells)[1] < rows
+    else:
+        rows, batch = 0, grid.centres_m[cells, 1] < height_m
     if not batch.any():
-        raise UserError(f"no particle is in the lowest {rows} rows of cells: raise figures.batch_height_m")
+        place = (
+            f"in the lowest {rows} rows of cells"
+            if rows
+            else f"in a cell whose middle is below {height_m:g} m"
+        )
+        raise UserError(f"no particle is {place}: raise figures.batch_height_m")
     return np.asarray(batch)
 
 

@@ -8,6 +8,7 @@ from numba import njit
 from numpy.typing import NDArray
 
 from bedchain.errors import DataError
+from bedchain.measures.cell_shares import shares_inside
 from bedchain.trajectory.grid import Grid
 
 # (direction, group), in the order of all arrays with an axis of 4
@@ -44,15 +45,15 @@ def sides(
     (4, ..., n_particles) bool array
         In the order of `GROUPS`.
     """
-    left, low = x_m < split_x_m, z_m < split_z_m
-    return np.stack((left, ~left, low, ~low))
+    # a particle that is not in the frame (NaN) is on no side
+    return np.stack((x_m < split_x_m, x_m >= split_x_m, z_m < split_z_m, z_m >= split_z_m))
 
 
 def side_shares(grid: Grid, split_x_m: float, split_z_m: float) -> NDArray[np.float64]:
     """Share of each cell that lies on each side.
 
-    A cell that a line divides counts with the share of its area on each side, as if its particles were evenly
-    spread: a chain of cells does not know where they are in the cell.
+    A cell that a line divides counts with the share of its area (or volume) on each side, as if its particles
+    were evenly spread: a chain of cells does not know where they are in the cell.
 
     Parameters
     ----------
@@ -76,11 +77,16 @@ def side_shares(grid: Grid, split_x_m: float, split_z_m: float) -> NDArray[np.fl
             raise DataError(
                 f"the split at {name} = {split:g} m leaves one side empty: choose 0 to {size:g} m"
             )
+    if grid.form != "boxes":
+        of_left = shares_inside(grid, lambda x, z, y: x < split_x_m)
+        of_low = shares_inside(grid, lambda x, z, y: z < split_z_m)
+        return np.stack((of_left, 1 - of_left, of_low, 1 - of_low))
     left = np.clip((split_x_m - grid.x_edges_m[:-1]) / grid.cell_width_m, 0.0, 1.0)
     low = np.clip((split_z_m - grid.z_edges_m[:-1]) / grid.cell_height_m, 0.0, 1.0)
     # a line on an edge, up to round-off, divides no cell
     left, low = (np.where(np.abs(s - np.round(s)) < 1e-9, np.round(s), s) for s in (left, low))
-    of_left, of_low = np.tile(left, grid.rows), np.repeat(low, grid.columns)
+    of_left = np.tile(left, grid.rows * grid.layers)
+    of_low = np.tile(np.repeat(low, grid.columns), grid.layers)
     return np.stack((of_left, 1 - of_left, of_low, 1 - of_low))
 
 

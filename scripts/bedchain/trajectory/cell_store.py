@@ -10,7 +10,7 @@ import numpy as np
 from bedchain.errors import DataError, UserError
 from bedchain.files import atomic_file, map_array, write_npy_header
 from bedchain.trajectory.chunks import read_frames
-from bedchain.trajectory.grid import Grid
+from bedchain.trajectory.grid import OUTSIDE, Grid
 
 # positions of a chunk: about 16 MB with the velocities
 CHUNK_VALUES = 1_000_000
@@ -22,7 +22,7 @@ class CellStore(NamedTuple):
     Attributes
     ----------
     cells : (n_frames, n_particles) ndarray of int32
-        Memory map: only the frames in use are read.
+        Memory map: only the frames in use are read. `grid.OUTSIDE` for a particle that is not there.
     times_s : (n_frames,) ndarray
         Times of the frames [s].
     grid : Grid
@@ -33,7 +33,10 @@ class CellStore(NamedTuple):
     grid: Grid
 
 
-def write_cells(trajectory: np.ndarray, times_s: np.ndarray, grid: Grid, target: Path) -> None:
+def write_cells(
+    trajectory: np.ndarray, times_s: np.ndarray, grid: Grid, target: Path, outside: str = "refuse",
+    y_row: int | None = None, complete: bool = True,
+) -> int:  # fmt: skip
     """Write the cell of every particle in every frame, in chunks of frames.
 
     Parameters
@@ -44,21 +47,44 @@ def write_cells(trajectory: np.ndarray, times_s: np.ndarray, grid: Grid, target:
         Times of the frames [s].
     grid : Grid
     target : Path
-        ``cells.npz``: cells, times_s, columns, rows, width_m, height_m.
+        ``cells.npz``: cells, times_s, and the arrays of the grid.
+    outside : {"refuse", "exit"}
+        Whether a particle may leave the bed; it is then `grid.OUTSIDE`.
+    y_row : int, optional
+        Row of the positions along y [m], where there is one.
+    complete : bool
+        Whether all particles are in all frames; if not, those that are not there have `grid.OUTSIDE`.
+
+    Returns
+    -------
+    int
+        Particles outside, summed over the frames.
+
+    Raises
+    ------
+    DataError
+        A position is outside a bed that no particle may leave.
     """
     n_frames, _, n_particles = trajectory.shape
     chunk = max(1, CHUNK_VALUES // n_particles)
-    small = {"columns": grid.columns, "rows": grid.rows, "width_m": grid.width_m, "height_m": grid.height_m}
+    may_leave, gone = outside == "exit", 0
     with atomic_file(target) as temporary, zipfile.ZipFile(temporary, "w") as archive:
         # the file of numpy.savez, without the whole array in memory
         with archive.open("cells.npy", "w", force_zip64=True) as stream:
             write_npy_header(stream, (n_frames, n_particles), np.dtype(np.int32))
             for first in range(0, n_frames, chunk):
                 part = read_frames(trajectory, first, min(first + chunk, n_frames))
-                stream.write(grid.cell_of(part[:, 0], part[:, 1], first).tobytes())
-        for name, value in {"times_s": times_s, **small}.items():
+                y = None if y_row is None else part[:, y_row]
+                if complete and not may_leave:
+                    cells = grid.cell_of(part[:, 0], part[:, 1], first, y)
+                else:
+                    cells = grid.cells_seen(part[:, 0], part[:, 1], first, y, may_leave)
+                    gone += int((cells == OUTSIDE).sum())
+                stream.write(cells.tobytes())
+        for name, value in {"times_s": times_s, **grid.arrays()}.items():
             with archive.open(f"{name}.npy", "w") as stream:
                 np.lib.format.write_array(stream, np.asarray(value))
+    return gone
 
 
 def open_cells(path: Path) -> CellStore:
@@ -81,9 +107,7 @@ def open_cells(path: Path) -> CellStore:
     try:
         with np.load(path) as small:
             times_s = small["times_s"]
-            grid = Grid(
-                float(small["width_m"]), float(small["height_m"]), int(small["columns"]), int(small["rows"])
-            )
+            grid = Grid.from_arrays(small)
         cells = map_array(path, "cells")
     except (OSError, DataError, ValueError, KeyError, zipfile.BadZipFile) as error:
         raise UserError(f"{path}: not readable as cells ({error}); delete it and run again") from error

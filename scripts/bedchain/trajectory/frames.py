@@ -28,6 +28,8 @@ class Frames:
         Cell of each particle on a grid.
     vx_m_s, vz_m_s : (n_frames, n_particles) array, optional
         Velocities [m/s], where models use them.
+    y_m : (n_frames, n_particles) array, optional
+        Positions along the depth [m], where they are known.
     """
 
     times_s: NDArray[np.float64]
@@ -36,11 +38,12 @@ class Frames:
     cells: NDArray[np.int32]
     vx_m_s: NDArray[np.floating] | None = None
     vz_m_s: NDArray[np.floating] | None = None
+    y_m: NDArray[np.floating] | None = None
 
     def __post_init__(self) -> None:
         check_times(self.times_s)
         shape = (len(self.times_s), self.cells.shape[-1])
-        for name in ("x_m", "z_m", "cells", "vx_m_s", "vz_m_s"):
+        for name in ("x_m", "z_m", "cells", "vx_m_s", "vz_m_s", "y_m"):
             array = getattr(self, name)
             if array is not None and array.shape != shape:
                 raise DataError(
@@ -62,6 +65,7 @@ class Frames:
             self.cells[which],
             None if self.vx_m_s is None else self.vx_m_s[which],
             None if self.vz_m_s is None else self.vz_m_s[which],
+            None if self.y_m is None else self.y_m[which],
         )
 
 

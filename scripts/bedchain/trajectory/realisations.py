@@ -32,8 +32,8 @@ class Realisation:
     ----------
     name : str
         For messages.
-    values : (n_frames, 4, n_particles) array
-        Rows x, z [m], vx, vz [m/s]; a memory map.
+    values : (n_frames, >= 4, n_particles) array
+        Rows x, z [m], vx, vz [m/s], and perhaps y [m]; a memory map.
     times_s : (n_frames,) array
         Times of the frames [s].
     width_m, height_m : float
@@ -44,6 +44,8 @@ class Realisation:
         Frames before the first one, from the main run.
     stored : CellStore, optional
         Cells of all frames on the grid of the case.
+    y_row : int, optional
+        Row of y, where there is one.
     """
 
     name: str
@@ -54,6 +56,7 @@ class Realisation:
     has_velocities: bool = True
     past: NDArray[np.floating] | None = None
     stored: CellStore | None = None
+    y_row: int | None = None
 
     @property
     def interval_s(self) -> float:
@@ -123,7 +126,7 @@ class Realisation:
         values = np.concatenate((self.past[-lacking:], self.values[: frame + 1]))
         first = frame + 1 - len(values)
         times = self.times_s[0] + self.interval_s * np.arange(first, frame + 1)
-        return self._frames(times, values, cells_of(grid, values, first))
+        return self._frames(times, values, cells_of(grid, values, first, self.y_row))
 
     def up_to(self, time_s: float, lag: int) -> Frames:
         """`leading_to` the frame at a time [s], with the stored cells."""
@@ -132,16 +135,19 @@ class Realisation:
     def _cells(self, grid: Grid, values: NDArray[np.floating], first: int) -> NDArray[np.int32]:
         if self.stored is not None and grid == self.stored.grid:
             return self.stored.cells[first : first + len(values)]
-        return cells_of(grid, values, first)
+        return cells_of(grid, values, first, self.y_row)
 
     def _frames(
         self, times_s: NDArray[np.float64], values: NDArray[np.floating], cells: NDArray[np.int32]
     ) -> Frames:
         vx, vz = (values[:, 2], values[:, 3]) if self.has_velocities else (None, None)
-        return Frames(times_s, values[:, 0], values[:, 1], cells, vx, vz)
+        y = None if self.y_row is None else values[:, self.y_row]
+        return Frames(times_s, values[:, 0], values[:, 1], cells, vx, vz, y)
 
 
-def cells_of(grid: Grid, values: NDArray[np.floating], first: int = 0) -> NDArray[np.int32]:
+def cells_of(
+    grid: Grid, values: NDArray[np.floating], first: int = 0, y_row: int | None = None
+) -> NDArray[np.int32]:
     """Cells of all particles, in a loop over frames, which saves memory.
 
     Parameters
@@ -151,12 +157,21 @@ def cells_of(grid: Grid, values: NDArray[np.floating], first: int = 0) -> NDArra
         Rows x, z [m], ...
     first : int
         Number of the first frame, for messages.
+    y_row : int, optional
+        Row of y, where there is one.
 
     Returns
     -------
     (n_frames, n_particles) int32 array
     """
-    return np.stack([grid.cell_of(now[0], now[1], frame) for frame, now in enumerate(values, first)])
+    return np.stack(
+        [
+            grid.cells_seen(now[0], now[1], frame, None if y_row is None else now[y_row])
+            if np.isnan(now[0]).any()
+            else grid.cell_of(now[0], now[1], frame, None if y_row is None else now[y_row])
+            for frame, now in enumerate(values, first)
+        ]
+    )
 
 
 def open_realisation(name: str, trajectory: Path, metadata: Path, cells: Path | None = None) -> Realisation:
@@ -195,7 +210,8 @@ def open_realisation(name: str, trajectory: Path, metadata: Path, cells: Path | 
     if stored is not None and values.shape[::2] != stored.cells.shape:
         raise UserError(f"{trajectory} and {cells} differ in frames or particles: run assign_cells again")
     size = float(about["width_m"]), float(about["height_m"])
-    return Realisation(name, values, times, *size, has, stored=stored)
+    y_row = about["columns"].index("y") if "y" in about["columns"] else None
+    return Realisation(name, values, times, *size, has, stored=stored, y_row=y_row)
 
 
 def open_bed(bed: BedFiles) -> Realisation:

@@ -40,7 +40,7 @@ def test_many_cells_are_refused(tmp_path):
     case = CASE.replace("columns: 10", "columns: 5000").replace("rows: 50", "rows: 5000")
     (tmp_path / "case.yaml").write_text(case, encoding="utf-8")
     assert_refused(tmp_path / "case.yaml", "cells.rows", "")
-    with pytest.raises(CaseError, match="25000000, more than 1000000; take at most 200 rows"):
+    with pytest.raises(CaseError, match="25000000, more than 4000000; take at most 800 rows"):
         load_case(tmp_path / "case.yaml")
 
 

@@ -3,7 +3,7 @@ import numpy as np
 import pytest
 
 from bedchain.errors import DataError, UserError
-from bedchain.trajectory.grid import Grid
+from bedchain.trajectory.grid import OUTSIDE, Grid
 
 PAPER = Grid(0.27, 1.05, 27, 105)
 
@@ -81,3 +81,75 @@ def test_from_one_cell_to_one_a_diameter():
 def test_impossible_grids_are_refused(sizes, message):
     with pytest.raises(DataError, match=message):
         Grid(*sizes)
+
+
+CUBE = {"depth_m": 0.2, "layers": 4}
+DEEP = [
+    Grid(0.2, 0.3, 5, 6, **CUBE),
+    Grid(0.2, 0.3, 5, 6, 0.2, form="rings"),
+    Grid(0.2, 0.3, 5, 6, **CUBE, form="sectors"),
+    Grid(0.2, 0.2, 5, 6, 0.3, 4, form="sectors", axis="horizontal"),
+    Grid(0.2, 0.2, 5, 6, 0.3, form="rings", axis="horizontal"),
+    Grid(0.2, 0.2, 5, 6, 0.3, form="sectors", axis="horizontal"),
+    Grid(0.2, 0.3, 1, 6),
+]
+
+
+def in_the_bed(grid, number=5000, seed=4):
+    """Places spread evenly over the box or the cylinder of a grid."""
+    rng = np.random.default_rng(seed)
+    x, z, y = (length * rng.random(number) for length in grid.size)
+    if grid.form == "boxes":
+        return x, z, y
+    other = y if grid.axis == "vertical" else z
+    inside = np.hypot(x - grid.width_m / 2, other - grid.width_m / 2) < grid.width_m / 2
+    return x[inside], z[inside], y[inside]
+
+
+@pytest.mark.parametrize("grid", DEEP)
+def test_cells_of_every_form_hold_their_middles_and_number_layer_by_layer(grid):
+    column, row, layer = grid.indices(np.arange(grid.n_cells))
+    assert ((layer * grid.rows + row) * grid.columns + column == np.arange(grid.n_cells)).all()
+    middles = [
+        (i + 0.5) * (length / n)
+        for i, length, n in zip((column, row, layer), grid.lengths_m, grid.counts, strict=True)
+    ]
+    x, z, y = grid.coordinates.place(*middles, grid.size)
+    assert grid.cell_of(x, z, y_m=y).tolist() == list(range(grid.n_cells))
+    np.testing.assert_allclose(grid.centres_m, np.column_stack((x, z)))
+    assert Grid.from_arrays({name: np.array(value) for name, value in grid.arrays().items()}) == grid
+
+
+@pytest.mark.parametrize("grid", DEEP)
+def test_pictures_add_up_over_the_layers(grid):
+    x, z, y = in_the_bed(grid)
+    held = np.bincount(grid.cell_of(x, z, y_m=y), minlength=grid.n_cells)
+    across, up = grid.picture(x, z, y)
+    flat = grid.shown
+    np.testing.assert_array_equal(
+        grid.projected(held), np.bincount(flat.cell_of(across, up), minlength=flat.n_cells)
+    )
+    assert bool(grid.projection) == (grid.form != "boxes" or grid.layers > 1)
+
+
+def test_a_grid_that_needs_y_asks_for_it():
+    with pytest.raises(DataError, match="need the third axis, y: the frames have none"):
+        DEEP[0].cell_of([0.1], [0.1])
+    assert DEEP[5].cell_of([0.1], [0.05]).size == 1  # sectors of a drum without layers do not
+    with pytest.raises(DataError, match=r"rings: they have no layers"):
+        Grid(0.2, 0.3, 5, 6, 0.2, 2, form="rings")
+    with pytest.raises(DataError, match=r"5 x 6 x 2 cells in a bed 0.0 m deep"):
+        Grid(0.2, 0.3, 5, 6, layers=2)
+
+
+def test_a_place_beyond_the_wall_of_a_cylinder_is_outside():
+    with pytest.raises(DataError, match=r"particle 1 .*at r = 0.1"):
+        DEEP[5].cell_of([0.1, 0.19], [0.1, 0.19])
+
+
+def test_particles_that_are_not_there_or_left_are_outside():
+    x = np.array([[0.1, np.nan, 0.1], [0.1, 0.1, 0.3]])
+    cells = DEEP[-1].cells_seen(x, np.where(np.isnan(x), np.nan, 0.1), may_leave=True)
+    assert cells.tolist() == [[2, OUTSIDE, 2], [2, 2, OUTSIDE]]
+    with pytest.raises(DataError, match=r"particle 2 .*frame 8 .*x = 0.3 m, 0.1 m outside"):
+        DEEP[-1].cells_seen(x, np.full(x.shape, 0.1), 7)
