@@ -26,20 +26,16 @@ def cells_can_be_counted(columns: int, rows: int, layers: int) -> Iterator[Findi
 
 
 @reads(*FORMS, *COUNTS, *BED, "particles.diameter_m")
-def cells_hold_particles(
-    form: str, axis: str, columns: int, rows: int, layers: int, width: float, height: float, depth: float,
-    diameter: float,
-) -> Iterator[Finding]:  # fmt: skip
+def cells_hold_particles(form: str, axis: str, *numbers: float) -> Iterator[Finding]:
     """Refuse cells narrower than a particle."""
+    counts, (width, height, depth, diameter) = numbers[:3], numbers[3:]
     radius, turn, vertical = width / 2, PI * width, axis == "vertical"
     lengths = {
         "boxes": (width, height, depth),
         "rings": (radius, height if vertical else depth, depth),
         "sectors": (turn, height, radius) if vertical else (turn, radius, depth),
     }[form]
-    for name, cells, length in zip(
-        ("columns", "rows", "layers"), (columns, rows, layers), lengths, strict=True
-    ):
+    for name, cells, length in zip(("columns", "rows", "layers"), counts, lengths, strict=True):
         if ratio(length, diameter) < cells and (name != "layers" or cells > 1):
             wrong = f"{cells} cells over {length:g} m are narrower than a particle ({diameter:g} m)"
             yield f"cells.{name}", wrong, f"take at most {int(ratio(length, diameter))}"
