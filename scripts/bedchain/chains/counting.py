@@ -30,6 +30,9 @@ class Counts:
         Frames in a step [1].
     pairs : (n_from, 2) int64 array or None
         For counts of pairs: the previous and the present cell of each row, rising; else None.
+    lost, inserted : (n_cells,) int64 array or None
+        Particles in each cell that are not there one lag later, or were not there one lag before, summed over
+        the steps [1]; they are in no other number. None where all are always there, and for pairs.
     """
 
     moves: sparse.csr_array
@@ -38,6 +41,8 @@ class Counts:
     steps: int
     lag: int
     pairs: NDArray[np.int64] | None = None
+    lost: NDArray[np.int64] | None = None
+    inserted: NDArray[np.int64] | None = None
 
     @property
     def visits(self) -> NDArray[np.int64]:
@@ -58,7 +63,7 @@ def count_moves(
     last: int | None = None,
     step_weights: NDArray[np.int64] | None = None,
 ) -> Counts:
-    """Count the moves from cell to cell (Zhuang et al. 2015, Eq. 1: N_ij and N_i).
+    """Count the moves from cell to cell (Zhuang et al. 2015, Eq. 1: N_ij and N_i), both ends seen.
 
     Parameters
     ----------
@@ -85,11 +90,18 @@ def count_moves(
         No step fits, or a cell number is outside the grid.
     """
     starts, weights = step_starts(cells, lag, 1, first, last, step_weights)
-    occupied, table = np.zeros(n_cells, np.int64), hash_counts.empty_table()
-    for (before, after), chunk_weights in chunks(cells, n_cells, starts, weights, (0, lag)):
+    # one state more, for particles that are not there
+    n_states, table = n_cells + 1, hash_counts.empty_table()
+    occupied, gone = np.zeros(n_states, np.int64), np.zeros((2, n_cells), np.int64)
+    for parts, chunk_weights in chunks(cells, n_cells, starts, weights, (0, lag)):
+        gone += lost_and_inserted(parts[0], parts[1], chunk_weights, n_cells)
+        before, after = _set_apart(parts, n_cells)
         table = hash_counts.tally_moves(before, after, chunk_weights, occupied, table)
-    moves, shares = _csr(*hash_counts.table_entries(table), n_cells, n_cells)
-    return Counts(moves, shares, occupied, int(weights.sum()), lag)
+    keys, values = hash_counts.table_entries(table)
+    keys, inside = _inside(keys, n_cells)
+    moves, shares = _csr(keys, values[inside], n_cells, n_cells)
+    lost, inserted = gone if gone.any() else (None, None)
+    return Counts(moves, shares, occupied[:n_cells], int(weights.sum()), lag, lost=lost, inserted=inserted)
 
 
 def count_pairs(
@@ -114,21 +126,65 @@ def count_pairs(
     """
     starts, weights = step_starts(cells, lag, 2, step_weights=step_weights)
     pairs, table = hash_counts.empty_table(np.int64, 1), hash_counts.empty_table()
-    occupied = np.zeros(0, np.int64)
-    for (before, now, after), chunk_weights in chunks(cells, n_cells, starts, weights, (0, lag, 2 * lag)):
+    occupied, n_states = np.zeros(0, np.int64), n_cells + 1
+    for parts, chunk_weights in chunks(cells, n_cells, starts, weights, (0, lag, 2 * lag)):
+        first, now, then = _set_apart(parts, n_cells)
         pairs, occupied, table = hash_counts.tally_pairs(
-            before, now, after, chunk_weights, n_cells, pairs, occupied, table
+            first, now, then, chunk_weights, n_states, pairs, occupied, table
         )
     pair_keys, numbers = hash_counts.table_entries(pairs)
-    rank = np.empty(numbers.size, np.int64)
-    rank[numbers[:, 0]] = np.arange(numbers.size)
+    pair_keys, inside = _inside(pair_keys, n_cells)
+    rank = np.full(numbers.size, -1, np.int64)
+    numbers = numbers[inside]
+    rank[numbers[:, 0]] = np.arange(len(numbers))
     keys, values = hash_counts.table_entries(table)
     del table
-    keys = rank[keys // n_cells] * n_cells + keys % n_cells
+    rows, columns = rank[keys // n_states], keys % n_states
+    if not inside.all():
+        values, rows, columns = values[rows >= 0], rows[rows >= 0], columns[rows >= 0]
+    keys = rows * n_cells + columns
     order = np.argsort(keys)
     moves, shares = _csr(keys[order], values[order], pair_keys.size, n_cells)
     cell_pairs = np.column_stack(np.divmod(pair_keys, n_cells))
     return Counts(moves, shares, occupied[numbers[:, 0]], int(weights.sum()), lag, cell_pairs)
+
+
+def lost_and_inserted(
+    before: NDArray[np.int32], after: NDArray[np.int32], weights: NDArray[np.int64], n_cells: int
+) -> NDArray[np.int64]:
+    """Particles by cell that are not there at the end, and at the start, of some steps, (2, n_cells) [1].
+
+    Parameters
+    ----------
+    before, after : (n_steps, n_particles) int array
+        Cells at the start and the end of each step; `grid.OUTSIDE` for particles that are not there.
+    weights : (n_steps,) int64 array
+        How many times each step counts [1].
+    n_cells : int
+        Number of cells.
+    """
+    gone = np.zeros((2, n_cells), np.int64)
+    for start, end, weight in zip(before, after, weights, strict=True):
+        if weight and (start.min() < 0 or end.min() < 0):
+            for which, (seen, other) in enumerate(((start, end), (end, start))):
+                alone = seen[(seen >= 0) & (other < 0)]
+                gone[which] += weight * np.bincount(alone, minlength=n_cells)
+    return gone
+
+
+def _set_apart(parts: list[NDArray[np.int32]], n_cells: int) -> list[NDArray[np.int32]]:
+    """Cells of the frames of steps; of a particle that one of them lacks, the state ``n_cells`` in all."""
+    if not any(part.size and part.min() < 0 for part in parts):
+        return parts
+    unseen = np.logical_or.reduce([part < 0 for part in parts])
+    return [np.where(unseen, np.int32(n_cells), part) for part in parts]
+
+
+def _inside(keys: NDArray[np.int64], n_cells: int) -> tuple[NDArray[np.int64], NDArray[np.bool_]]:
+    """Keys ``i * n_cells + j`` of keys with a state more, of those between cells, and which these are."""
+    rows, columns = np.divmod(keys, n_cells + 1)
+    inside = (rows < n_cells) & (columns < n_cells)
+    return (rows * n_cells + columns)[inside], inside
 
 
 def step_starts(

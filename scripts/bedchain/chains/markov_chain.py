@@ -16,7 +16,7 @@ from bedchain.chains.velocity_binning import VelocityClasses
 from bedchain.errors import DataError
 from bedchain.measures import mixing
 from bedchain.trajectory.frames import Frames
-from bedchain.trajectory.grid import Grid
+from bedchain.trajectory.grid import OUTSIDE, Grid
 
 # what a file of a chain says of its grid beside bed_m and grid
 DEEP = ("depth_m", "layers", "form", "axis")
@@ -79,7 +79,8 @@ class MarkovChain:
         cells = np.asarray(frames.cells)
         if self.classes is None:
             return cells
-        return np.asarray(cells[self.back :] * np.int32(self.classes.number) + self.classes.of(frames))
+        symbols = cells[self.back :] * np.int32(self.classes.number) + self.classes.of(frames)
+        return np.maximum(symbols, np.int32(OUTSIDE))  # of particles that are not there
 
     @property
     def back(self) -> int:

@@ -37,6 +37,8 @@ READERS: dict[str, Callable[[dict[str, NDArray[Any]]], Chain]] = {
     "jump": jump.JumpChain.from_arrays,
     "recurrence": recurrence.RecurrenceChain.from_arrays,
 }
+# Models that follow each particle through the window.
+WHOLE = {"jump", "recurrence"}
 
 # For models that learn faster from other weights of the same steps.
 RELEARNERS: dict[str, Callable[..., Callable[[NDArray[np.int64]], Chain]]] = {
@@ -104,6 +106,11 @@ def learn(
     """
     if name not in LEARNERS:
         raise DataError(f"model {name!r} is unknown: choose from {', '.join(LEARNERS)}")
+    if name in WHOLE and any((now < 0).any() for now in frames.cells):
+        raise DataError(
+            f"particles come and go in the learning window, which the {name} chain cannot learn from: take "
+            f"{', '.join(sorted(LEARNERS.keys() - WHOLE))}"
+        )
     return LEARNERS[name](frames, grid, lag=lag, estimator=estimator, step_weights=step_weights, **options)
 
 

@@ -16,9 +16,9 @@ QUANTILE_SAMPLES = 1_000_000
 
 
 def measured(frames: Frames) -> bool:
-    """True if the frames hold velocities; None or NaN are none."""
-    velocity = (frames.vx_m_s, frames.vz_m_s)
-    return all(part is not None and not np.isnan(part[-1]).any() for part in velocity)
+    """True if the frames hold velocities; None, or NaN of particles that are there, are none."""
+    velocity, seen = (frames.vx_m_s, frames.vz_m_s), np.asarray(frames.cells[-1]) >= 0
+    return all(part is not None and not np.isnan(part[-1][seen]).any() for part in velocity)
 
 
 def velocities(frames: Frames) -> tuple[NDArray[np.floating], NDArray[np.floating]]:
@@ -130,5 +130,6 @@ def quantile_classes(frames: Frames, number: Sequence[int], back: int = 0) -> Ve
     for values, n in zip(velocities(frames), number, strict=True):
         # Every stride-th particle, beginning at another particle in each frame: all particles are sampled.
         sample = np.concatenate([now[frame % stride :: stride] for frame, now in enumerate(values)])
-        edges.append(np.quantile(sample.astype(np.float64), np.arange(1, n) / n))
+        sample = sample[~np.isnan(sample)].astype(np.float64)
+        edges.append(np.quantile(sample, np.arange(1, n) / n))
     return VelocityClasses(edges[0], edges[1], back)

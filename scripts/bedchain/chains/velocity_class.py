@@ -23,7 +23,7 @@ from bedchain.chains.markov_chain import MarkovChain
 from bedchain.chains.velocity_binning import VelocityClasses, measured, quantile_classes
 from bedchain.errors import DataError
 from bedchain.trajectory.frames import Frames, lag_frames
-from bedchain.trajectory.grid import Grid
+from bedchain.trajectory.grid import OUTSIDE, Grid
 
 CLASSES = (3, 3)
 # States with fewer samples move as their cell does: their own shares would have errors of a third.
@@ -177,6 +177,7 @@ def _states(
     states = edges.of(frames)
     for now, cells in zip(states, frames.cells[back:], strict=True):
         now += np.int32(edges.number) * np.asarray(cells)
+        np.maximum(now, OUTSIDE, out=now)  # of particles that are not there
     return edges, states
 
 

@@ -61,7 +61,7 @@ def batch_of(grid: Grid, cells: np.ndarray, height_m: float) -> np.ndarray:
             else f"in a cell whose middle is below {height_m:g} m"
         )
         raise UserError(f"no particle is {place}: raise figures.batch_height_m")
-    return np.asarray(batch)
+    return np.asarray(batch & (cells >= 0))
 
 
 def share_by_cell(cells: np.ndarray, n_cells: int) -> np.ndarray:
@@ -70,7 +70,7 @@ def share_by_cell(cells: np.ndarray, n_cells: int) -> np.ndarray:
     Parameters
     ----------
     cells : (n_particles,) integer array
-        Cell of each particle.
+        Cell of each particle; those that are not there (`grid.OUTSIDE`) do not count.
     n_cells : int
         Number of cells [1].
 
@@ -79,7 +79,8 @@ def share_by_cell(cells: np.ndarray, n_cells: int) -> np.ndarray:
     (n_cells,) ndarray
         Shares with the sum 1 [1].
     """
-    return np.asarray(np.bincount(cells, minlength=n_cells) / cells.size)
+    seen = cells[cells >= 0]
+    return np.asarray(np.bincount(seen, minlength=n_cells) / seen.size)
 
 
 def observed_shares(

@@ -95,6 +95,8 @@ def remaining_from_positions(
 ) -> NDArray[np.float64]:
     """Share of each group, marked in the first frame, that is on its side in each frame (Fig. 5, DEM).
 
+    Of particles that come and go (NaN where they are not there), the share of those that are still there.
+
     Parameters
     ----------
     x_m, z_m : (n_frames, n_particles) array
@@ -111,7 +113,8 @@ def remaining_from_positions(
     remaining = np.empty((len(x_m), 4))
     for frame in range(len(x_m)):
         now = sides(np.asarray(x_m[frame]), np.asarray(z_m[frame]), split_x_m, split_z_m)
-        remaining[frame] = _mean_of(marked, (marked & now).sum(axis=1))
+        seen = marked & (now[0] | now[1])
+        remaining[frame] = _mean_of(seen, (marked & now).sum(axis=1))
     return remaining
 
 

@@ -7,6 +7,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from bedchain.errors import DataError
+from bedchain.trajectory.grid import OUTSIDE
 
 # copied out of the memory map, whose pages can then be freed
 CHUNK_BYTES = 64 * 2**20
@@ -37,7 +38,7 @@ def chunks(
     Yields
     ------
     parts : list of (n, n_particles) arrays
-        Cells after n starts, an array for each shift.
+        Cells after n starts, an array for each shift; `grid.OUTSIDE` for particles that are not there.
     weights : (n,) int64 array
         Weights of these starts.
 
@@ -84,8 +85,8 @@ def _distance(array: np.memmap) -> int:
 
 
 def _check_cells(frames: NDArray[np.int32], n_cells: int, first_frame: int) -> None:
-    if frames.size and (frames.min() < 0 or frames.max() >= n_cells):
-        frame, particle = (int(i) for i in np.argwhere((frames < 0) | (frames >= n_cells))[0])
+    if frames.size and (frames.min() < OUTSIDE or frames.max() >= n_cells):
+        frame, particle = (int(i) for i in np.argwhere((frames < OUTSIDE) | (frames >= n_cells))[0])
         raise DataError(
             f"particle {particle} (counted from 0) in frame {first_frame + frame} is in cell "
             f"{frames[frame, particle]}, the grid has cells 0 to {n_cells - 1}: assign the cells again"

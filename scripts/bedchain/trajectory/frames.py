@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Consecutive frames of the same particles, from which chains are learned and started; windows and lags."""
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import NamedTuple
 
 import numpy as np
@@ -55,6 +55,15 @@ class Frames:
     def interval_s(self) -> float:
         """Time between two frames [s]."""
         return float(self.times_s[-1] - self.times_s[0]) / max(len(self.times_s) - 1, 1)
+
+    def seen_last(self) -> "Frames":
+        """The same frames of the particles that are in the last one."""
+        seen = np.asarray(self.cells[-1]) >= 0
+        if seen.all():
+            return self
+        names = ("x_m", "z_m", "cells", "vx_m_s", "vz_m_s", "y_m")
+        arrays = ((name, getattr(self, name)) for name in names)
+        return replace(self, **{name: array[:, seen] for name, array in arrays if array is not None})
 
     def part(self, which: slice) -> "Frames":
         """The frames of a slice, as views."""

@@ -14,6 +14,7 @@ from bedchain.chains.counting import Counts, count_moves, count_pairs
 from bedchain.errors import DataError
 from bedchain.files import map_array
 from bedchain.trajectory import chunks
+from bedchain.trajectory.grid import OUTSIDE
 from made.frames import hopping_cells
 
 # Shares are sums of at most a few hundred fractions.
@@ -185,3 +186,52 @@ def test_first_and_last_choose_the_steps_of_a_part():
     assert_same(by_path(part), by_path(count_moves(cells, 12, 2, step_weights=weights)))
     assert part.steps == 11
     assert_same(by_path(count_moves(cells, 12, 2, first=9, last=99)), naive(cells[9:], 2, 1))
+
+
+def come_and_go(seed, n_frames=30, n_particles=200):
+    """Hopping particles, of which stretches of time are missing."""
+    cells = hopping_cells(seed, n_frames, n_particles)
+    rng = np.random.default_rng(seed)
+    for particle in range(0, n_particles, 3):
+        first, last = np.sort(rng.integers(0, n_frames + 1, 2))
+        cells[first:last, particle] = OUTSIDE
+    return cells
+
+
+def test_only_moves_with_both_ends_seen_count_and_the_others_are_lost_or_inserted():
+    cells, weights = come_and_go(3), np.random.default_rng(1).integers(0, 3, 28)
+    counts = count_moves(cells, 12, 2, step_weights=weights)
+    moves, lost, inserted = np.zeros((12, 12), int), np.zeros(12, int), np.zeros(12, int)
+    for step, weight in enumerate(weights):
+        for i, j in zip(cells[step], cells[step + 2], strict=True):
+            if i >= 0 and j >= 0:
+                moves[i, j] += weight
+            elif i >= 0:
+                lost[i] += weight
+            elif j >= 0:
+                inserted[j] += weight
+    assert lost.sum() > 0 and inserted.sum() > 0
+    np.testing.assert_array_equal(counts.moves.toarray(), moves)
+    np.testing.assert_array_equal([counts.lost, counts.inserted], [lost, inserted])
+    # a share is of the particles that were seen again: the rows of each step sum to 1
+    np.testing.assert_allclose(counts.shares.sum(axis=1), counts.occupied, atol=1e-9)
+
+
+def test_pairs_with_a_particle_that_is_not_there_do_not_count():
+    cells = come_and_go(4)
+    counts = count_pairs(cells, 12, 2)
+    by_hand = Counter()
+    for i, j, k in zip(cells[:-4].ravel(), cells[2:-2].ravel(), cells[4:].ravel(), strict=True):
+        if min(i, j, k) >= 0:
+            by_hand[int(i), int(j), int(k)] += 1
+    rows, columns = counts.moves.nonzero()
+    pairs = [(*map(int, counts.pairs[row]), int(column)) for row, column in zip(rows, columns, strict=True)]
+    assert dict(zip(pairs, counts.moves.data.tolist(), strict=True)) == dict(by_hand)
+    assert counts.occupied.min() > 0 and len(counts.pairs) == counts.moves.shape[0]
+
+
+def test_where_all_are_always_there_nothing_is_lost():
+    counts = count_moves(hopping_cells(1), 12)
+    assert counts.lost is None and counts.inserted is None
+    with pytest.raises(DataError, match="is in cell -2"):
+        count_moves(hopping_cells(1) - 2, 12)
