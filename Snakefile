@@ -21,12 +21,14 @@ from bedchain.workflow import (
     options_or_exit,
     pick,
     preset_name,
+    quote_interpreter,
     reference_or_exit,
     source_files,
     targets_or_exit,
     words_or_exit,
 )
 
+quote_interpreter()
 if not workflow.is_main_process:  # a job's own snakemake repeats no hint
     logging.getLogger("bedchain").setLevel(logging.ERROR)
 TYPED = workflow.is_main_process and "snakemake" in Path(sys.argv[0]).parts[-2:]  # sys.argv is a user's line

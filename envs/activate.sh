@@ -7,7 +7,8 @@ if [ ! -f "$bedchain_root/envs/activate.sh" ]; then
     echo 'activate.sh: source it in the root folder of bedchain' >&2
     return 1
 fi
-export PATH="$bedchain_root/.venv/bin:$PATH"
+. envs/clean.sh
+export PATH="$bedchain_root/.venv/bin:/usr/bin:/bin:$PATH"
 export LC_ALL=C.UTF-8
 
 # OpenFOAM of Debian finds its etc folder by this.

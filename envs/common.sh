@@ -2,11 +2,28 @@
 # shellcheck shell=sh
 # Shell functions shared by the set-up scripts; sourced, never run.
 
+SCRATCH_MB=50 # temporary files of compiler and solvers [MB]
+
 say() { printf 'setup: %s\n' "$*" >&2; }
 
 fail() {
     printf 'setup: error: %s\n' "$*" >&2
     exit 1
+}
+
+# check_place: ends with an error where the project's folder or the temporary one cannot serve; takes no time.
+check_place() {
+    place=$(pwd -P && echo /) # the slash keeps a line end of the name
+    case ${place%??} in
+    *[:\"\$\`\\{}]* | *[[:cntrl:]]*)
+        fail "the name of this folder holds a character that the programs under bedchain cannot take" \
+            "(one of : \" \$ \` \\ { } or a control character): $(pwd -P); rename it, or clone into another" ;;
+    esac
+    [ -w . ] || fail "no permission to write in $(pwd -P), where packages and results go; clone bedchain into a folder of yours"
+    temporary=${TMPDIR:-/tmp}
+    [ -d "$temporary" ] && [ -w "$temporary" ] ||
+        fail "the temporary folder $temporary (TMPDIR) is missing or not yours to write in; make it, or unset TMPDIR"
+    need_space "$temporary" "$SCRATCH_MB" 'temporary files (TMPDIR)'
 }
 
 # need_space FOLDER MEGABYTES WHAT: ends with an error unless FOLDER's file system has that much room.

@@ -2,7 +2,8 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 # debian_packages.sh LOG PACKAGE...: installs those of the Debian packages that are missing (as root, or by sudo).
 set -eu
-here=$(dirname "$0")
+umask 022 # what root installs is for all users
+here=$(dirname -- "$0")
 # shellcheck source=envs/common.sh
 . "$here/common.sh"
 

@@ -3,7 +3,7 @@
 # openfoam_headers.sh WORK TARGET: puts OpenFOAM's headers, flat, into TARGET/include/<library>. Debian ships the libraries
 # without them: they come from the Debian source package of the installed version. WORK holds what is needed meanwhile.
 set -eu
-cd "$(dirname "$0")/.."
+cd -- "$(dirname -- "$(readlink -f -- "$0")")/.."
 . envs/common.sh
 LIBRARIES='OpenFOAM finiteVolume meshTools OSspecific/POSIX' # folders of src/ whose headers the solver includes
 ROOM_MB=200                                                  # download, package lists and headers [MB]

@@ -4,8 +4,9 @@
 # (headers); with `checks` also what ./test needs, into the same .venv.
 # A folder is finished when its stamp names the state of its inputs; the stamp is written last.
 set -eu
-cd "$(dirname "$0")/.."
+cd -- "$(dirname -- "$(readlink -f -- "$0")")/.."
 . envs/common.sh
+. envs/clean.sh
 PYTHON=/usr/bin/python3
 VENV_MB=2100 # Python packages, downloaded and unpacked [MB]
 TEMP_MB=500  # of that in the temporary folder
@@ -14,8 +15,9 @@ CHECKS_MB=500 # the checks' packages [MB]
 # lock_entry NAME: the lock's lines on that package (version and hashes).
 lock_entry() { awk -v name="$1==" 'index($0, name) == 1, !/\\$/' envs/requirements.txt; }
 
-pip_install() { # the lock is complete: what it does not name is not looked for
-    logged .setup/pip.log 'pip install' .venv/bin/python -m pip install --quiet --no-input \
+pip_install() { # the lock is complete: what it does not name is not looked for; a user's own target is not ours
+    logged .setup/pip.log 'pip install' env -u PIP_TARGET -u PIP_PREFIX -u PIP_ROOT PIP_USER=0 \
+        .venv/bin/python -m pip install --quiet --no-input \
         --disable-pip-version-check --no-deps --require-hashes "$@"
 }
 
@@ -42,6 +44,7 @@ case ${1-} in
 '' | checks) ;;
 *) fail "setup.sh knows the word 'checks' only, not '$1'" ;;
 esac
+check_place
 mkdir -p .setup
 exec 9>.setup/lock
 flock -n 9 || { say 'waiting for another set-up to finish' && flock 9; }

@@ -5,7 +5,7 @@
 set -eu
 
 output=${1:?usage: sh openfoam_case/solver/build.sh OUTPUT}
-sources=$(dirname "$0")/bedFoam
+sources=$(dirname -- "$0")/bedFoam
 headers=${OPENFOAM_HEADERS:-.openfoam/include}
 arch=$(g++ -print-multiarch)
 
@@ -18,16 +18,18 @@ mkdir -p "$(dirname "$output")"
 objects=$(mktemp -d)
 trap 'rm -rf "$objects"' EXIT
 
-options="-std=c++14 -O3 -march=native -Wall -DWM_DP -DWM_LABEL_SIZE=32 -DOPENFOAM=1912 -DNoRepository -Dlinux64 \
-    -DWM_ARCH_OPTION=64 -ftemplate-depth-100 -fPIC -I$sources"
+set -- -std=c++14 -O3 -march=native -Wall -DWM_DP -DWM_LABEL_SIZE=32 -DOPENFOAM=1912 -DNoRepository -Dlinux64 \
+    -DWM_ARCH_OPTION=64 -ftemplate-depth-100 -fPIC "-I$sources"
 for library in OpenFOAM finiteVolume meshTools OSspecific; do
-    options="$options -isystem $headers/$library"
+    set -- "$@" -isystem "$headers/$library"
 done
-options="$options -isystem /usr/include/liggghts -isystem /usr/lib/$arch/openmpi/include"
+set -- "$@" -isystem /usr/include/liggghts -isystem "/usr/lib/$arch/openmpi/include"
 
 # Each file on its own, two at a time
+# shellcheck disable=SC2016 # $ is for the inner shell
 find "$sources" -name '*.C' -print0 |
-    xargs -0 -P 2 -I{} sh -c "g++ $options -c {} -o $objects/\$(basename {} .C).o"
+    xargs -0 -P 2 -I{} sh -c 'file=$1 objects=$2 && shift 2 && exec g++ "$@" -c "$file" -o "$objects/$(basename "$file" .C).o"' \
+        compile {} "$objects" "$@"
 g++ -o "$output.part" "$objects"/*.o -L/usr/lib/openmpi-system -L"/usr/lib/$arch/openmpi/lib" \
     -lfiniteVolume -lmeshTools -lOpenFOAM -lPstream -lliggghts -lmpi -lmpi_cxx -ldl -lm
 mv "$output.part" "$output"

@@ -2,6 +2,8 @@
 """The case of a run, its keys, and the files that a rule depends on, for the Snakefile."""
 
 import ast
+import shlex
+import sys
 from collections.abc import Collection, Mapping, Sequence
 from functools import cache
 from pathlib import Path
@@ -36,6 +38,12 @@ TABLE_SECTIONS = (
 SCRIPTS = Path("scripts")
 LIBRARY = "bedchain"
 CASES = Path("cases")
+
+
+def quote_interpreter() -> None:
+    """Make Python's own path a word of a shell line, where snakemake puts it as it is: it may hold blanks."""
+    if Path(sys.executable).exists():
+        sys.executable = shlex.quote(sys.executable)
 
 
 def words_or_exit(config: Mapping[str, Any], typed: Sequence[str] | None) -> dict[str, Any]:

@@ -44,6 +44,8 @@ TRADEOFF = {"study_tradeoff", "plot_tradeoff", "plot_variants"}
 # rules whose shell line an edit of their script does not run again
 STABLE = {"build_solver", "write_parameters", "run_dem", "repeat_dem"}
 
+ODD_NAME = "it's my & Ünï (1) #x;%+=,@!~[]*?<>|"  # all that the name of a folder may hold
+
 COPIED = ("Snakefile", "cases", "scripts", "openfoam_case", "liggghts_inputs", "envs/python.yaml")
 
 
@@ -106,6 +108,7 @@ def opened(folder: Path, words: dict[str, Any]) -> Iterator[Any]:
     with pytest.MonkeyPatch.context() as patch, SnakemakeApi(OutputSettings(quiet={Quietness.ALL})) as api:
         patch.setenv("XDG_CACHE_HOME", str(folder / ".cache"))
         patch.setattr(sys, "path", list(sys.path))
+        patch.setattr(sys, "executable", sys.executable)
         yield api.workflow(
             ResourceSettings(cores=2),
             config_settings=ConfigSettings(config=words),
@@ -150,9 +153,11 @@ def finished_copy(folder: Path) -> Path:
     return folder
 
 
-def snakemake(folder: Path, *arguments: str) -> subprocess.CompletedProcess[str]:
+def snakemake(
+    folder: Path, *arguments: str, python: Path | str = sys.executable
+) -> subprocess.CompletedProcess[str]:
     """Run snakemake in a process of its own; its caches stay in the folder."""
-    command = [sys.executable, "-m", "snakemake", "--cores", "2", *arguments]
+    command = [str(python), "-m", "snakemake", "--cores", "2", *arguments]
     environment = os.environ | {"XDG_CACHE_HOME": str(folder / ".cache"), "PYTHONDONTWRITEBYTECODE": "1"}
     return subprocess.run(command, cwd=folder, env=environment, capture_output=True, text=True, check=False)
 
