@@ -67,6 +67,7 @@ PLOTS = [
     *(["fig_difference"] if {*MODEL_FIGURES} <= {*MODELS} else []),
     "fig_chapman_kolmogorov",
     "fig_timescales",
+    "fig_choice",
     "fig_stationarity",
     *(["fig_discussion"] if {*MODEL_FIGURES} & {*MODELS} else []),
 ]
@@ -83,6 +84,7 @@ rule all:
                 "mixing.csv",
                 "metrics.csv",
                 "diagnostics.csv",
+                "choice.csv",
                 "stationarity.csv",
                 "timing.csv",
                 "table1.csv",

@@ -6,6 +6,26 @@ from bedchain.workflow import table_values
 OPTIONS = {model: CASE["chain"].get(model, {}) for model in MODELS}
 
 
+# The lag and the cells by rule, from the learning window alone: milliseconds.
+rule choose_chain:
+    input:
+        code("choose_chain"),
+        **TRAJECTORY,
+    output:
+        choice=f"{RESULTS}/choice.csv",
+        curve=f"{RESULTS}/choice_curve.csv",
+    log:
+        f"{LOGS}/choose_chain.log",
+    benchmark:
+        f"{BENCHMARKS}/choose_chain.tsv"
+    conda:
+        "../envs/python.yaml"
+    params:
+        **pick(CASE, "learning", "mixing", "particles.diameter_m"),
+    script:
+        "choose_chain.py"
+
+
 rule assign_cells:
     input:
         code("assign_cells"),

@@ -71,6 +71,10 @@ FIGURE_RULES = {
         "input": {"diagnostics": f"{RESULTS}/diagnostics.csv"},
         "params": {"colours": {model: COLOURS[model] for model in MODELS}},
     },
+    "plot_choice": {
+        "name": "fig_choice",
+        "input": {"choice": f"{RESULTS}/choice.csv", "curve": f"{RESULTS}/choice_curve.csv"},
+    },
     "plot_stationarity": {
         "name": "fig_stationarity",
         "input": {**TRAJECTORY, "bed_series": RUN["bed_series"]},

@@ -11,6 +11,7 @@ from made.workflow import ALL, BED, STABLE, finished_copy, modules_behind, plan,
 
 AUDIT = {"audit_scene"}  # reads neither time nor cells
 WHOLE_BED = {"plot_snapshot"}  # needs particles and gas, no cells
+CHOICE = {"choose_chain", "plot_choice"}  # reads the learning window and the lines between groups alone
 
 
 @pytest.fixture(scope="module")
@@ -63,7 +64,7 @@ def test_a_comment_in_the_case_file_runs_nothing(finished, case):
 
 def test_another_grid_runs_the_cells_and_what_follows(finished, case):
     case("cells", "rows", "100")
-    assert set(plan(finished).jobs) == ALL - AUDIT - BED - WHOLE_BED
+    assert set(plan(finished).jobs) == ALL - AUDIT - BED - WHOLE_BED - CHOICE
 
 
 @pytest.mark.parametrize(
@@ -121,7 +122,7 @@ def test_another_repeat_runs_it_alone_and_what_compares(finished, case):
 
 def test_another_estimator_leaves_the_cells_alone(finished, case):
     case("chain", "estimator", "per_step")
-    left_alone = AUDIT | BED | WHOLE_BED | {"assign_cells", "plot_cells", "plot_stationarity"}
+    left_alone = AUDIT | BED | WHOLE_BED | CHOICE | {"assign_cells", "plot_cells", "plot_stationarity"}
     assert set(plan(finished).jobs) == ALL - left_alone
 
 
@@ -142,7 +143,7 @@ def test_a_preset_makes_chains_of_its_own_from_the_bed_that_is_there(finished, c
         file = finished / "cases" / "short" / "case.yaml"
         file.write_text(file.read_text(encoding="utf-8") + f"{key}: fast\n", encoding="utf-8")
         case("figures", "batch_height_m", "0.02")
-        assert set(plan(finished).jobs) == chains - WHOLE_BED - AUDIT
+        assert set(plan(finished).jobs) == chains - WHOLE_BED - AUDIT - CHOICE
 
 
 @pytest.mark.parametrize(

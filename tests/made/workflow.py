@@ -24,6 +24,7 @@ from made import ROOT
 # rules of the target `all`, of a case with gas that is simulated
 BED = {"build_solver", "write_parameters", "run_dem", "repeat_dem", "parse_dumps", "measure_mixing"}
 CHAINS = {
+    "choose_chain",
     "assign_cells",
     "build_transitions",
     "run_chain",
@@ -34,6 +35,7 @@ CHAINS = {
 FIGURES = {
     *("plot_cells", "plot_cost", "plot_distribution", "plot_mixing", "plot_snapshot", "plot_difference"),
     *("plot_chapman_kolmogorov", "plot_timescales", "plot_stationarity", "plot_discussion", "make_film"),
+    "plot_choice",
 }
 TABLES = {"write_table", "write_provenance", "discuss_errors"}
 ALL = {"audit_scene"} | BED | CHAINS | FIGURES | TABLES

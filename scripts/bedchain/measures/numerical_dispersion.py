@@ -80,3 +80,27 @@ def spreading(x_m: NDArray[np.floating], z_m: NDArray[np.floating], grid: Grid, 
         variances = moments[1] - moments[0] ** 2, moments[3] - moments[2] ** 2, moments[4]
         coefficients[:, axis] = np.array(variances) * size**2 / (2 * lag.seconds)
     return Spreading(*coefficients)
+
+
+def added_share(place_m: NDArray[np.floating], size_m: float, lag: int) -> float:
+    """Dispersion that cells add along one axis in theory, over that of the particles.
+
+    Parameters
+    ----------
+    place_m : (n_frames, n_particles) array
+        Positions along the axis [m].
+    size_m : float
+        Of a cell [m].
+    lag : int
+        [frames].
+
+    Returns
+    -------
+    float
+        h^2 E[f (1 - f)] / var(displacement) [1]; 0 where nothing moves.
+    """
+    starts = np.arange(0, len(place_m) - lag, max(1, (len(place_m) - lag) // STARTS))
+    steps = np.subtract(place_m[starts + lag], place_m[starts], dtype=np.float64)
+    variance = float(steps.var())
+    part = np.abs(steps) / size_m % 1.0
+    return size_m**2 * float((part * (1 - part)).mean()) / variance if variance > 0 else 0.0

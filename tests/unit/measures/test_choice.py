@@ -1,0 +1,166 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Lag and cells by rule: walkers with known curves, made-up dispersions, and data that allow no choice."""
+
+import numpy as np
+import pytest
+
+from bedchain.chains.counting import count_moves
+from bedchain.chains.estimators import transition_matrix
+from bedchain.errors import DataError
+from bedchain.measures.choice import (
+    MOST_ADDED,
+    MOST_MEMORY,
+    choose_cells,
+    choose_lag,
+    correlation_times,
+    counts_of,
+    raised,
+)
+from bedchain.measures.dispersion_by_lag import BLOCKS, DispersionByLag, dispersion_by_lag
+from bedchain.measures.mixing import side_shares
+from bedchain.measures.remaining_memory import remaining_memory
+from bedchain.trajectory.grid import Grid
+from bedchain.trajectory.synthetic import INTERVAL_S
+from made.frames import half_remaining, kept_velocity, squared_displacement
+
+BOX_M, SPEED_M_S, WALKERS, FRAMES, DIAMETER_M = 0.5, 0.2, 500, 201, 1e-3
+LONGEST = 60
+# the error of the best lag, with the scatter of a realisation, is exceeded by no more
+MOST_OVER_BEST = 1.2
+
+
+def curve(z, x=None, interval_s=INTERVAL_S):
+    """A dispersion by lag of given values at lags 1, 2, ..., the same without any block."""
+    values = np.column_stack((z if x is None else x, z)).astype(float)
+    lags = np.arange(1, len(values) + 1)
+    return DispersionByLag(
+        lags, interval_s, 2 * len(values) * interval_s, values, np.stack([values] * BLOCKS)
+    )
+
+
+def errors_by_lag(frames, memory_s):
+    """Rms error of the left half's curve at all frames by the lag, and a realisation's scatter."""
+    length = FRAMES - 1 - LONGEST
+    known = half_remaining(
+        squared_displacement(np.arange(length + 1) * INTERVAL_S, memory_s, SPEED_M_S), BOX_M
+    )
+    grid = Grid(BOX_M, BOX_M, 20, 1)
+    cells = np.concatenate([grid.cell_of(place, 0 * place) for place in (frames.x_m, frames.z_m)], axis=1)
+    step = [
+        np.eye(20),
+        *(
+            transition_matrix(count_moves(cells, 20, lag), "pooled").toarray()
+            for lag in range(1, LONGEST + 1)
+        ),
+    ]
+    left = side_shares(grid, BOX_M / 2, BOX_M / 2)[0]
+    errors = []
+    for lag in range(1, LONGEST + 1):
+        now, shares = left / left.sum(), []
+        for frame in range(length + 1):
+            now = now @ step[lag] if frame and frame % lag == 0 else now
+            shares.append(now @ step[frame % lag] @ left)
+        errors.append(np.sqrt(np.mean((np.array(shares) - known)[1:] ** 2)))
+    return np.array(errors), np.sqrt((known * (1 - known)).mean() / (WALKERS / 2))
+
+
+@pytest.mark.parametrize("memory_s", [0.05, 0.1, 0.2])
+def test_no_lag_is_much_better_for_walkers_in_a_box(memory_s):
+    frames = kept_velocity(WALKERS, FRAMES, BOX_M, memory_s, SPEED_M_S, 4)
+    dispersion = dispersion_by_lag(frames.x_m, frames.z_m, INTERVAL_S)
+    chosen = choose_lag(dispersion, WALKERS, DIAMETER_M)
+    chosen = raised(chosen, dispersion, np.stack((frames.x_m, frames.z_m)))
+    errors, scatter = errors_by_lag(frames, memory_s)
+    whole = np.hypot(errors, scatter)
+    assert whole[chosen.frames - 1] <= MOST_OVER_BEST * whole.min()
+    assert errors[chosen.frames - 1] < errors[0] / 3
+
+
+def test_a_lag_that_walls_cut_short_is_raised():
+    frames = kept_velocity(WALKERS, FRAMES, 0.2, 0.2, SPEED_M_S, 4)
+    dispersion = dispersion_by_lag(frames.x_m, frames.z_m, INTERVAL_S)
+    places = np.stack((frames.x_m, frames.z_m))
+    by_dispersion = choose_lag(dispersion, WALKERS, DIAMETER_M)
+    chosen = raised(by_dispersion, dispersion, places)
+    assert chosen.frames > 1.4 * by_dispersion.frames and "raised" in chosen.remark
+    assert max(chosen.memory) <= MOST_MEMORY < max(remaining_memory(places, by_dispersion.frames))
+
+
+def test_the_later_axis_decides():
+    rising = np.minimum(np.arange(1, 21) / 10, 1) - 0.01 * np.arange(20)
+    early = np.minimum(np.arange(1, 21) / 3, 1) - 0.01 * np.arange(20)
+    chosen = choose_lag(curve(rising, early), 100, DIAMETER_M)
+    assert chosen.on_axis.tolist() == [3, 10] and chosen.frames == 10 == chosen.range[0] == chosen.range[1]
+    assert not chosen.doubts and not chosen.remark
+
+
+def test_a_maximum_at_the_end_of_the_window_is_none():
+    chosen = choose_lag(curve(np.arange(1, 21)), 100, DIAMETER_M)
+    assert chosen.frames == 8  # a fifth of 40 frames
+    assert "still rises at 0.5 s" in chosen.doubts[0]
+
+
+def test_a_plateau_up_to_the_end_is_a_maximum():
+    plateau = np.minimum(np.arange(1, 41) / 5, 1) + 1e-3 * np.arange(40)
+    chosen = choose_lag(curve(plateau), 100, DIAMETER_M)
+    assert chosen.frames == 5 and not chosen.doubts and "plateau" in chosen.remark
+
+
+def test_a_window_of_less_than_three_correlation_times_is_doubted():
+    top = 1 - (np.arange(1, 21) - 17) ** 2 / 400
+    assert "may be a fluctuation" in choose_lag(curve(top), 100, DIAMETER_M).doubts[0]
+
+
+def test_frames_coarser_than_the_motion_are_named():
+    falling = curve(1 / np.arange(1, 21))
+    chosen = choose_lag(falling, 100, DIAMETER_M)
+    assert chosen.frames == 1 and "shortest lag there is" in chosen.remark
+    np.testing.assert_allclose(correlation_times(falling), INTERVAL_S / 2)
+
+
+@pytest.mark.parametrize("particles", [1, 9])
+def test_too_few_particles_are_refused(particles):
+    with pytest.raises(DataError, match="known to no digit.*give chain.lag_s and cells"):
+        choose_lag(curve(np.ones(20)), particles, DIAMETER_M)
+
+
+def test_particles_at_rest_are_refused():
+    with pytest.raises(DataError, match="at rest.*less than their diameter"):
+        choose_lag(curve(np.full(20, 1e-12)), 100, DIAMETER_M)
+
+
+def test_an_axis_without_motion_does_not_decide():
+    rising = np.minimum(np.arange(1, 21) / 10, 1) - 0.01 * np.arange(20)
+    chosen = choose_lag(curve(rising, np.zeros(20)), 100, DIAMETER_M)
+    assert chosen.frames == 10 and chosen.on_axis.tolist() == [0, 10]
+
+
+def cells_of_walkers(lag, lines=(0.25, 0.25)):
+    frames = kept_velocity(WALKERS, FRAMES, BOX_M, 0.1, SPEED_M_S, 4)
+    return choose_cells((frames.x_m, frames.z_m), (BOX_M, BOX_M), lines, DIAMETER_M, lag)
+
+
+def test_cells_are_the_largest_that_add_little():
+    cells = cells_of_walkers(20)
+    side = BOX_M / cells.columns
+    fine = [largest for largest, x, z in cells.tried if max(x, z) < MOST_ADDED]
+    assert cells.columns == cells.rows and side == pytest.approx(max(fine)) and not cells.doubt
+    assert max(cells.added) < MOST_ADDED < max(shares for size, *shares in cells.tried if size > side)[0]
+
+
+def test_a_longer_lag_takes_larger_cells():
+    assert cells_of_walkers(4).columns > cells_of_walkers(40).columns
+
+
+def test_cells_that_add_too_much_whatever_their_size_are_doubted():
+    rng = np.random.default_rng(2)
+    places = 0.05 + np.cumsum(rng.normal(0, 1e-4, (40, 50)), axis=0)
+    cells = choose_cells((places, places), (0.1, 0.1), (0.05, 0.05), DIAMETER_M, 1)
+    assert cells.columns == 100 and "even the smallest cells" in cells.doubt
+
+
+def test_sides_are_whole_halves_of_a_diameter_and_below_the_line():
+    counts = counts_of(0.4, 0.08, DIAMETER_M)
+    assert counts[0] == 5 and counts[-1] == 400 and all(800 % count == 0 for count in counts)
+    assert counts_of(0.3333, 0.1, DIAMETER_M)[:2] == [4, 5]
+    assert counts_of(0.002, 0.001, DIAMETER_M) == [2]
