@@ -190,11 +190,13 @@ rule make_film:
         code("make_film"),
         **TRAJECTORY,
         cells=rules.assign_cells.output.cells,
-        transitions=f"{RESULTS}/transitions_{MODELS[0]}.npz",
+        transitions=expand(f"{RESULTS}/transitions_{{model}}.npz", model=MODELS),
     output:
         film=f"{FIGURES}/film.mp4",
     log:
         f"{LOGS}/make_film.log",
+    benchmark:
+        f"{BENCHMARKS}/make_film.tsv"
     conda:
         "../envs/python.yaml"
     params:

@@ -1,35 +1,36 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""A film of the comparison: particles of the DEM, their voidage, particles of a chain: figures/film.mp4."""
+"""A film of the comparison: particles of the DEM, voidage, particles of the chains: figures/film.mp4."""
 
+from collections.abc import Iterable, Iterator
 from dataclasses import dataclass
 from pathlib import Path
 
 import imageio_ffmpeg
 import numpy as np
-from matplotlib import pyplot as plt
-from matplotlib import rcParams
-from matplotlib.animation import FFMpegWriter
-from matplotlib.axes import Axes
-from matplotlib.image import AxesImage
+from numpy.typing import NDArray
 from tqdm import tqdm
 
 from bedchain.chains import registry
-from bedchain.figures.film import Canvas, in_their_cells, voidages
-from bedchain.figures.style import close_frame, figure_style
+from bedchain.chains.chain import Chain
+from bedchain.figures.film import Canvas, Places, at_film_steps, in_their_cells, pixel_size, voidages
+from bedchain.figures.film_frame import FilmFrame
+from bedchain.figures.model_styles import label
+from bedchain.figures.style import figure_style
 from bedchain.files import atomic_file
 from bedchain.measures.voidage import Slab
 from bedchain.stage import LOG, run_stage
-from bedchain.trajectory.frames import Window, lag_frames
-from bedchain.trajectory.realisations import open_bed
+from bedchain.trajectory.frames import Frames, Window, lag_frames
+from bedchain.trajectory.grid import Grid
+from bedchain.trajectory.realisations import Realisation, open_bed
 from bedchain.trajectory.store import BedFiles
 
 FRAMES_PER_SECOND = 20
-# of particles that change from frame to frame: 4 MB for 10 s
-KILOBITS_PER_SECOND = 3200
-HEIGHT_IN, DPI = 6.4, 150
+# constant quality: a bit rate would blur the clock; coarser, a chain's single particles lose their colour
+QUALITY, EFFORT = "32", "veryfast"
 # freeboard without particles is not shown, but for this share of the height shown
 FREEBOARD = 0.1
-VOIDAGE_COLOURS, VOIDAGE_LEAST = "Blues_r", 0.35
+VOIDAGE_COLOURS, VOIDAGE_LIMITS = "Blues_r", (0.35, 1.0)
+DEM, VOIDAGE, FIRST_CHAIN = 0, 1, 2  # panels
 
 
 @dataclass(frozen=True)
@@ -49,16 +50,16 @@ class Halves:
 
 
 def make_film(
-    bed: BedFiles, transitions: Path, film: Path, comparison: Window, halves: Halves, slab: Slab,
+    bed: BedFiles, transitions: list[Path], film: Path, comparison: Window, halves: Halves, slab: Slab,
     cell_size_m: float, seed: int,
 ) -> None:  # fmt: skip
-    """Draw every step of the chain over the comparison, particles in the colour of the half they started in.
+    """Draw every step of the first chain, particles in the colour of the half that they started in.
 
     Parameters
     ----------
     bed : BedFiles
-    transitions : Path
-        ``transitions_<model>.npz``.
+    transitions : list of Path
+        ``transitions_<model>.npz`` of the chains to show.
     film : Path
         mp4 to make.
     comparison : Window
@@ -67,56 +68,87 @@ def make_film(
     cell_size_m : float
         Size of the gas cells, in which the voidage is shown [m].
     seed : int
-        Of the chain's Monte Carlo run, and of where in its cell each particle is drawn.
+        Of the chains' Monte Carlo runs, and of where in its cell each particle is drawn.
     """
-    run, chain = open_bed(bed), registry.load(transitions)
+    run, chains = open_bed(bed), [registry.load(file) for file in transitions]
     frames = run.window(comparison)
-    lag = lag_frames(chain.lag_s, frames.interval_s)
-    start = run.up_to(comparison.start_s, lag)
-    for_paths, for_places = np.random.default_rng(seed).spawn(2)
-    top = min(run.grid.height_m, (1 + FREEBOARD) * float(max(z.max() for z in frames.z_m)))
-    canvas = Canvas(run.grid.width_m, top, slab.diameter_m, halves.colours)
-    left = frames.x_m[0] < halves.split_x_m
-    dem = zip(frames.x_m[::lag], frames.z_m[::lag], strict=True)
-    paths = chain.paths(start, (len(frames.times_s) - 1) // lag, for_paths)
-    places = in_their_cells(paths, run.grid, for_places.random((2, left.size)))
-    size = run.grid.width_m, top
-    voidage = voidages(frames, lag, *size, cell_size_m, slab.thickness_m, slab.diameter_m)
-    rcParams["animation.ffmpeg_path"] = imageio_ffmpeg.get_ffmpeg_exe()
-    writer = FFMpegWriter(fps=FRAMES_PER_SECOND, bitrate=KILOBITS_PER_SECOND)
-    with figure_style(), atomic_file(film) as temporary:
-        # a film's frames are of even numbers of pixels
-        wide = 2 * round(DPI * HEIGHT_IN * (2.4 * run.grid.width_m / top + 0.35) / 2) / DPI
-        figure, panels = plt.subplots(1, 3, figsize=(wide, HEIGHT_IN), sharey=True)
-        names = ("DEM", "voidage of the DEM", f"{chain.name} chain")
-        images = [_panel(*pair, canvas) for pair in zip(panels, names, strict=True)]
-        images[1].set(cmap=VOIDAGE_COLOURS, clim=(VOIDAGE_LEAST, 1.0))
-        panels[0].set_ylabel("z [m]")
-        title = figure.suptitle(" ", fontsize=9)
-        steps = zip(frames.times_s[::lag], dem, voidage, places, strict=True)
-        total = (len(frames.times_s) - 1) // lag + 1
-        with writer.saving(figure, str(temporary), DPI):
-            for time_s, of_dem, gas, of_chain in tqdm(steps, "make_film", total, disable=None):
-                images[0].set_data(canvas.discs(*of_dem, left))
-                images[1].set_data(gas)
-                images[2].set_data(canvas.discs(*of_chain, left))
-                title.set_text(f"{time_s:.3f} s")
-                writer.grab_frame()
+    lag = lag_frames(chains[0].lag_s, frames.interval_s)
+    total = (len(frames.times_s) - 1) // lag + 1
+    size = run.width_m, min(run.height_m, (1 + FREEBOARD) * float(max(z.max() for z in frames.z_m)))
+    pixel_m = pixel_size(*size, slab.diameter_m, FIRST_CHAIN + len(chains))
+    canvas = Canvas(*size, slab.diameter_m, pixel_m, halves.colours)
+    gas = Grid(run.width_m, run.height_m, *(round(at / cell_size_m) for at in (run.width_m, run.height_m)))
+    generators = np.random.default_rng(seed).spawn(len(chains))
+    places = [
+        chain_places(chain, run, comparison, rng, (lag, total))
+        for chain, rng in zip(chains, generators, strict=True)
+    ]
+    with figure_style():
+        frame = film_frame(canvas, [label(chain.name) for chain in chains], halves.colours)
+    pictures = painted(frame, canvas, frames, lag, halves, voidages(frames, lag, gas, slab), gas, places)
+    write_film(film, frame.shape, tqdm(pictures, "make_film", total, disable=None))
     LOG.info("%d frames, %.1f MB in %s", total, film.stat().st_size / 1e6, film)
 
 
-def _panel(axes: Axes, name: str, canvas: Canvas) -> AxesImage:
-    width, height = canvas.size_m
-    image = axes.imshow(
-        np.full((1, 1, 3), 255, np.uint8),
-        extent=(0, width, 0, height),
-        origin="lower",
-        interpolation="antialiased",
-    )
-    axes.set(xticks=[0, width], xlabel="x [m]", xlim=(0, width), ylim=(0, height))
-    axes.set_title(name)
-    close_frame(axes)
-    return image
+def chain_places(
+    chain: Chain, run: Realisation, comparison: Window, rng: np.random.Generator, film: tuple[int, int]
+) -> Iterator[Places]:
+    """Positions of all particles by a Monte Carlo run of a chain, at every frame of the film.
+
+    Parameters
+    ----------
+    chain : Chain
+    run : Realisation
+    comparison : Window
+    rng : Generator
+    film : (int, int)
+        Frames of the DEM between two of the film, and frames of the film [1].
+    """
+    lag = lag_frames(chain.lag_s, run.interval_s)
+    start = run.up_to(comparison.start_s, lag)
+    for_paths, for_places = rng.spawn(2)
+    paths = chain.paths(start, (film[1] - 1) * film[0] // lag, for_paths)
+    shares = for_places.random((2, start.x_m.shape[1]))
+    return at_film_steps(in_their_cells(paths, chain.grid, shares), lag, *film)
+
+
+def painted(
+    frame: FilmFrame, canvas: Canvas, frames: Frames, lag: int, halves: Halves,
+    voidage: Iterable[NDArray[np.float64]], gas: Grid, places: list[Iterator[Places]],
+) -> Iterator[NDArray[np.uint8]]:  # fmt: skip
+    """The frame, painted anew for every step of the film."""
+    left = frames.x_m[0] < halves.split_x_m
+    dem = zip(frames.x_m[::lag], frames.z_m[::lag], strict=True)
+    for time_s, of_gas, *particles in zip(frames.times_s[::lag], voidage, dem, *places, strict=True):
+        frame.show_time(time_s)
+        frame.paint(VOIDAGE, canvas.cells(of_gas, gas, VOIDAGE_LIMITS, VOIDAGE_COLOURS))
+        for panel, (x, z) in zip((DEM, *range(FIRST_CHAIN, len(frame.panels))), particles, strict=True):
+            frame.paint(panel, canvas.discs(x, z, left))
+        yield frame.image
+
+
+def write_film(film: Path, shape: tuple[int, int], pictures: Iterable[NDArray[np.uint8]]) -> None:
+    """Write pictures of (rows, columns) pixels as a film, complete or not at all."""
+    with atomic_file(film) as temporary:
+        writer = imageio_ffmpeg.write_frames(
+            str(temporary), shape[::-1], fps=FRAMES_PER_SECOND, quality=None, macro_block_size=2,
+            output_params=["-crf", QUALITY, "-preset", EFFORT],
+        )  # fmt: skip
+        writer.send(None)
+        for picture in pictures:
+            writer.send(picture)
+        writer.close()
+
+
+def film_frame(canvas: Canvas, chains: list[str], colours: list[str]) -> FilmFrame:
+    """The panels and all that does not move."""
+    frame = FilmFrame(["DEM", "voidage of the DEM", *chains], canvas)
+    sides = list(zip(["from the left", "from the right"], colours, strict=True))
+    for number in (DEM, *range(FIRST_CHAIN, FIRST_CHAIN + len(chains))):
+        frame.legend(number, sides)
+    frame.colour_bar(VOIDAGE, VOIDAGE_COLOURS, VOIDAGE_LIMITS)
+    frame.draw()
+    return frame
 
 
 if rule := globals().get("snakemake"):

@@ -1,22 +1,32 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Pictures of particles for films: discs painted directly into an image."""
+"""Pictures of particles and of cells for films, painted directly into an image."""
 
 from collections.abc import Iterable, Iterator
 
 import numpy as np
+from matplotlib import colormaps
 from matplotlib.colors import to_rgb
 from numpy.typing import NDArray
 
-from bedchain.measures.voidage import Slab, voidage_profiles
+from bedchain.measures.voidage import Slab
 from bedchain.trajectory.frames import Frames
 from bedchain.trajectory.grid import Grid
 
-# at three pixels the discs of touching particles touch; more pixels make films larger and show no more
-PIXELS_PER_DIAMETER = 3
+Places = tuple[NDArray[np.floating], NDArray[np.floating]]
+
+# at four pixels a disc is round
+MOST_PIXELS_PER_DIAMETER = 4
+# a disc of one pixel would lose its colour, which a film stores for every second pixel only
+LEAST_PIXELS_OF_DISC = 2
+# of the bed: with the axes about a screen; more rows make the film larger and show no more
+MOST_ROWS = 1000
+# of all panels: most players end at 4096 pixels
+MOST_COLUMNS = 3600
+LEVELS = 256
 
 
-class Canvas:
-    """Picture of a bed with every particle as a disc of its true size.
+def pixel_size(width_m: float, height_m: float, diameter_m: float, panels: int) -> float:
+    """Size of the pixels in which a bed is painted [m].
 
     Parameters
     ----------
@@ -24,22 +34,42 @@ class Canvas:
         Of the part of the bed that is shown [m].
     diameter_m : float
         Of a particle [m].
+    panels : int
+        Pictures side by side [1].
+    """
+    return max(diameter_m / MOST_PIXELS_PER_DIAMETER, height_m / MOST_ROWS, panels * width_m / MOST_COLUMNS)
+
+
+class Canvas:
+    """Pictures of a bed: particles as discs of their true size but at least two pixels wide, values of cells.
+
+    The first row of a picture is the lowest.
+
+    Parameters
+    ----------
+    width_m, height_m : float
+        Of the part of the bed that is shown [m].
+    diameter_m : float
+        Of a particle [m].
+    pixel_m : float
+        Size of a pixel [m].
     colours : list of str
         Of the marked particles, and of the others.
     """
 
-    def __init__(self, width_m: float, height_m: float, diameter_m: float, colours: list[str]) -> None:
+    def __init__(
+        self, width_m: float, height_m: float, diameter_m: float, pixel_m: float, colours: list[str]
+    ) -> None:
         self.size_m = (width_m, height_m)
-        self.pixel_m = diameter_m / PIXELS_PER_DIAMETER
-        self.shape = tuple(max(1, round(length / self.pixel_m)) for length in (height_m, width_m))
+        self.pixel_m = pixel_m
+        self.shape = tuple(max(1, round(length / pixel_m)) for length in (height_m, width_m))
         self.palette = (255 * np.array([to_rgb(colour) for colour in ("white", *colours)])).astype(np.uint8)
-        self.reach = PIXELS_PER_DIAMETER // 2
+        self.reach = max(LEAST_PIXELS_OF_DISC, round(diameter_m / pixel_m))
         # a margin for discs whose centre is outside the picture
-        self.margin = 2 * self.reach
-        self.row_length = self.shape[1] + 2 * self.margin
-        offsets = np.arange(-self.reach, self.reach + 1)
-        rows, columns = np.meshgrid(offsets, offsets, indexing="ij")
-        inside = rows**2 + columns**2 <= (PIXELS_PER_DIAMETER / 2) ** 2
+        self.row_length = self.shape[1] + 2 * self.reach
+        rows, columns = np.indices((self.reach, self.reach))
+        middle = (self.reach - 1) / 2
+        inside = (rows - middle) ** 2 + (columns - middle) ** 2 <= (self.reach / 2) ** 2
         self.disc = (rows * self.row_length + columns)[inside]
 
     def discs(
@@ -56,22 +86,54 @@ class Canvas:
         Returns
         -------
         (rows, columns, 3) uint8 array
-            The first row is the lowest.
         """
-        row, column = (np.floor(np.asarray(place) / self.pixel_m).astype(int) for place in (z_m, x_m))
-        visible = (row >= -self.reach) & (row < self.shape[0] + self.reach)
-        visible &= (column >= -self.reach) & (column < self.shape[1] + self.reach)
-        centre = ((row + self.margin) * self.row_length + column + self.margin)[visible]
+        row, column = (
+            np.round(np.asarray(place) / self.pixel_m + self.reach / 2).astype(int) for place in (z_m, x_m)
+        )
+        visible = (row >= 0) & (row <= self.shape[0] + self.reach)
+        visible &= (column >= 0) & (column <= self.shape[1] + self.reach)
+        first = (row * self.row_length + column)[visible]
         colour = np.where(marked[visible], 1, 2).astype(np.uint8)
-        picture = np.zeros((self.shape[0] + 2 * self.margin, self.row_length), np.uint8)
+        picture = np.zeros((self.shape[0] + 2 * self.reach + 1, self.row_length), np.uint8)
         for pixel in self.disc:
-            picture.ravel()[centre + pixel] = colour
-        return self.palette[picture[self.margin :, self.margin :][: self.shape[0], : self.shape[1]]]
+            picture.ravel()[first + pixel] = colour
+        return self.palette[self._inside(picture)]
+
+    def _inside(self, picture: NDArray[np.uint8]) -> NDArray[np.uint8]:
+        return picture[self.reach :, self.reach :][: self.shape[0], : self.shape[1]]
+
+    def cells(
+        self, values: NDArray[np.float64], grid: Grid, limits: tuple[float, float], colour_map: str
+    ) -> NDArray[np.uint8]:
+        """Picture of the values of cells.
+
+        Parameters
+        ----------
+        values : (n_cells,) array
+        grid : Grid
+        limits : (float, float)
+            Values of the first and of the last colour.
+        colour_map : str
+            Name in Matplotlib.
+
+        Returns
+        -------
+        (rows, columns, 3) uint8 array
+        """
+        sizes = (grid.cell_height_m, grid.rows), (grid.cell_width_m, grid.columns)
+        row, column = (
+            np.minimum(((np.arange(pixels) + 0.5) * self.pixel_m / size).astype(int), number - 1)
+            for pixels, (size, number) in zip(self.shape, sizes, strict=True)
+        )
+        share = np.clip((values - limits[0]) / (limits[1] - limits[0]), 0, 1)
+        level = (share * (LEVELS - 1)).round().astype(np.uint8).reshape(grid.rows, grid.columns)
+        colours = (255 * colormaps[colour_map](np.linspace(0, 1, LEVELS))[:, :3]).astype(np.uint8)
+        return np.asarray(colours[level[np.ix_(row, column)]])
 
 
 def in_their_cells(
     paths: Iterable[NDArray[np.integer]], grid: Grid, shares: NDArray[np.float64]
-) -> Iterator[tuple[NDArray[np.float64], NDArray[np.float64]]]:
+) -> Iterator[Places]:
     """Positions of particles whose cells alone are known; each keeps its relative position in its cells.
 
     Parameters
@@ -92,36 +154,46 @@ def in_their_cells(
         yield (column + shares[0]) * grid.cell_width_m, (row + shares[1]) * grid.cell_height_m
 
 
-def voidages(
-    frames: Frames,
-    lag: int,
-    width_m: float,
-    top_m: float,
-    cell_m: float,
-    thickness_m: float,
-    diameter_m: float,
-) -> Iterator[NDArray[np.float64]]:
-    """Voidage of every lag-th frame, in nearly square cells.
+def at_film_steps(places: Iterator[Places], lag: int, film_lag: int, frames: int) -> Iterator[Places]:
+    """The newest positions of a chain at each frame of a film: a chain of longer steps rests in between.
+
+    Parameters
+    ----------
+    places : iterator of (x_m, z_m)
+        At each step of the chain, from step 0 on.
+    lag, film_lag : int
+        A step of the chain, a step of the film, in frames of the DEM [1].
+    frames : int
+        Of the film [1].
+
+    Yields
+    ------
+    x_m, z_m : (n_particles,) array
+        [m]
+    """
+    step, newest = 0, next(places)
+    for frame in range(frames):
+        while step < frame * film_lag // lag:
+            step, newest = step + 1, next(places)
+        yield newest
+
+
+def voidages(frames: Frames, lag: int, grid: Grid, slab: Slab) -> Iterator[NDArray[np.float64]]:
+    """Voidage of every lag-th frame, by the particles whose centres a cell holds.
 
     Parameters
     ----------
     frames : Frames
     lag : int
         Frames between two that are shown [1].
-    width_m, top_m : float
-        Of the part of the bed that is shown [m].
-    cell_m, thickness_m, diameter_m : float
-        Of a cell, of the slab, of a particle [m].
+    grid : Grid
+    slab : Slab
 
     Yields
     ------
-    (rows, columns) array
-        [1]; the first row is the lowest.
+    (n_cells,) array
+        [1]
     """
-    columns, rows = round(width_m / cell_m), max(1, round(top_m / cell_m))
-    edges = np.linspace(0, width_m, columns + 1), np.linspace(0, top_m, rows + 1)
-    width, slab = width_m / columns, Slab(thickness_m, diameter_m)
+    solids = np.pi / 6 * slab.diameter_m**3 / (grid.cell_width_m * grid.cell_height_m * slab.thickness_m)
     for x, z in zip(frames.x_m[::lag], frames.z_m[::lag], strict=True):
-        strip = np.clip(np.digitize(x, edges[0]) - 1, 0, columns - 1)
-        strips = [voidage_profiles(z[None, strip == at], edges[1], width, slab)[0] for at in range(columns)]
-        yield np.stack(strips, axis=1)
+        yield np.asarray(1 - solids * np.bincount(grid.cell_of(x, z), minlength=grid.n_cells), np.float64)
