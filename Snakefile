@@ -61,6 +61,7 @@ PLOTS = [
     "fig1_cells",
     "fig2_cost",
     *(MODEL_FIGURES[model] for model in MODELS if model in MODEL_FIGURES),
+    *(["fig_distribution_chosen"] if "chosen" in MODELS else []),
     "fig5a_radial",
     "fig5b_axial",
     *(["snapshot"] if GAS else []),

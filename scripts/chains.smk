@@ -3,6 +3,7 @@
 from bedchain.case.parameters import weight_per_area
 from bedchain.workflow import table_values
 
+OF_CASE = [model for model in MODELS if model != "chosen"]  # with the lag and the cells of the case
 OPTIONS = {model: CASE["chain"].get(model, {}) for model in MODELS}
 
 
@@ -50,6 +51,7 @@ rule build_transitions:
         code("build_transitions"),
         **TRAJECTORY,
         cells=rules.assign_cells.output.cells,
+        choice=lambda wildcards: [rules.choose_chain.output.choice] if wildcards.model == "chosen" else [],
     output:
         transitions=f"{RESULTS}/transitions_{{model}}.npz",
     log:
@@ -142,7 +144,7 @@ rule diagnose_chains:
         code("diagnose_chains"),
         **TRAJECTORY,
         cells=rules.assign_cells.output.cells,
-        transitions=expand(rules.build_transitions.output.transitions, model=MODELS),
+        transitions=expand(rules.build_transitions.output.transitions, model=OF_CASE),
     output:
         diagnostics=f"{RESULTS}/diagnostics.csv",
     log:
@@ -241,7 +243,7 @@ rule write_agreement:
     conda:
         "../envs/python.yaml"
     params:
-        **pick(CASE, "chain.models"),
+        models=OF_CASE,
     script:
         "write_agreement.py"
 

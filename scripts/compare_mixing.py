@@ -24,7 +24,7 @@ from bedchain.files import read_arrays, write_csv
 from bedchain.measures.batch import observed_shares
 from bedchain.measures.mixing import Splits, remaining_from_positions, sides
 from bedchain.stage import LOG, run_stage
-from bedchain.trajectory.frames import Window, lag_frames
+from bedchain.trajectory.frames import Window
 from bedchain.trajectory.realisations import open_bed
 from bedchain.trajectory.store import BedFiles
 
@@ -98,8 +98,7 @@ def compare_mixing(
     for model, path in chains.by_model().items():
         chain = read_arrays(path)
         observed = observed_shares(run.case_cells, chain["moments_s"], comparison.start_s, batch_height_m)
-        lag = lag_frames(float(chain["lag_s"]), frames.interval_s)
-        if len(chain["times_s"]) != len(dem[::lag]):
+        if len(chain["times_s"]) != len(dem):
             start_s, end_s = comparison
             raise UserError(f"{path} covers another window than {start_s:g} to {end_s:g} s: delete it")
         for source, how, replicates in (
@@ -108,9 +107,9 @@ def compare_mixing(
         ):
             remaining, share = chain[f"remaining{how}"], chain[f"batch_share{how}"]
             curves.append(curve_table(chain["times_s"], source, remaining))
-            rows += model_metrics(source, remaining, dem[::lag], replicates)
+            rows += model_metrics(source, remaining, dem, replicates)
             if further:
-                rows += noise_metrics(source, remaining, realisations[:, ::lag])
+                rows += noise_metrics(source, remaining, realisations)
             rows += batch_metrics(source, chain["moments_s"], share, observed)
         rows += report_metrics(model, str(chain["report"]))
     table = pd.DataFrame(rows)

@@ -28,7 +28,7 @@ FIGURE_RULES = {
     },
     "plot_distribution": {
         "name": "{figure}_{model}",
-        "wildcards": {"figure": "fig[34]|fig_distribution", "model": "static|dynamic|best"},
+        "wildcards": {"figure": "fig[34]|fig_distribution", "model": "static|dynamic|chosen|best"},
         "input": {
             "cells": CELLS,
             "chain": lambda wildcards: f"{RESULTS}/{CHAIN_FILES.get(wildcards.model, f'chain_{wildcards.model}')}.npz",
@@ -69,7 +69,7 @@ FIGURE_RULES = {
     "plot_timescales": {
         "name": "fig_timescales",
         "input": {"diagnostics": f"{RESULTS}/diagnostics.csv"},
-        "params": {"colours": {model: COLOURS[model] for model in MODELS}},
+        "params": {"colours": {model: COLOURS[model] for model in OF_CASE}},
     },
     "plot_choice": {
         "name": "fig_choice",
@@ -92,7 +92,7 @@ FIGURE_RULES = {
         "params": {
             "own_cell_m": cell_size(CASE),
             "own_lag_s": CASE["chain"]["lag_s"],
-            "colours": {model: COLOURS[model] for model in MODELS},
+            "colours": {model: COLOURS[model] for model in OF_CASE},
         },
     },
 }

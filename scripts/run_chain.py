@@ -7,20 +7,22 @@ from pathlib import Path
 import numpy as np
 
 from bedchain.chains import registry
+from bedchain.chains.between_steps import densities_at, mixing_by_frame
+from bedchain.chains.chain import Chain
 from bedchain.chains.registry import ModelSettings
 from bedchain.errors import UserError
 from bedchain.files import write_arrays
 from bedchain.measures.batch import Batch, batch_of
 from bedchain.measures.mixing import GROUPS, Splits
 from bedchain.stage import LOG, run_stage
-from bedchain.trajectory.cell_store import frame_at
-from bedchain.trajectory.frames import Window, lag_frames, whole_steps
+from bedchain.trajectory.frames import Window, lag_frames
 from bedchain.trajectory.realisations import open_bed
+from bedchain.trajectory.regrid import regrid
 from bedchain.trajectory.store import BedFiles
 from bedchain.uncertainty.bands import block_chains, block_length
 
-# a moment lies on a step up to round-off of the division
-STEP_TOLERANCE = 1e-6
+# a moment lies on a frame up to round-off of the division
+FRAME_TOLERANCE = 1e-6
 # chains that are learned again for the error bars
 REPLICATES = 40
 
@@ -49,56 +51,66 @@ def run_chain(
     Raises
     ------
     DataError, UserError
-        The window or a moment is no whole number of steps.
+        A moment is between frames, or the chain's file lacks its fractions of a step.
     """
     run, model = open_bed(bed), registry.load(transitions)
-    lag = lag_frames(model.lag_s, float(np.diff(run.times_s).mean()))
+    lag, fractions = lag_frames(model.lag_s, run.interval_s), registry.load_fractions(transitions)
+    if fractions.lag != lag:
+        raise UserError(f"{transitions} answers at whole steps only: delete it, and it is built again")
     which = comparison.frames(run.times_s)
-    steps = whole_steps(which.stop - which.start, lag)
-    start = run.up_to(comparison.start_s, lag)
-    marked = batch_of(run.grid, np.asarray(start.cells[-1]), batch.batch_height_m)[None]
-    at = moment_steps(batch.moments_s, model.lag_s)
+    length = which.stop - 1 - which.start
+    start = run.leading_to(model.grid, which.start, lag)
+    in_cells = run.leading_to(run.grid, which.start, lag, 0).cells[-1]
+    marked = batch_of(run.grid, np.asarray(in_cells), batch.batch_height_m)[None]
+    at = moment_frames(batch.moments_s, run.interval_s)
     for_mixing, for_batch, for_blocks = np.random.default_rng(settings.seed).spawn(3)
-    learned_from = run.window(learning)
+    learned_from = run.frames(model.grid, learning.frames(run.times_s))
+
+    def curves(of: Chain, rng: np.random.Generator | None = None) -> np.ndarray:
+        return mixing_by_frame(of, fractions, start, splits, length, rng)
+
+    def shares(rng: np.random.Generator | None = None) -> np.ndarray:
+        numbers = densities_at(model, fractions, start, marked, at, rng)[:, 0]
+        own = model.grid == run.grid
+        return (numbers if own else regrid(numbers, model.grid, run.grid)) / marked.sum()
+
     write_arrays(
         chain,
         {
-            "times_s": run.times_s[frame_at(run.times_s, comparison.start_s)]
-            + model.lag_s * np.arange(steps + 1),
+            "times_s": run.times_s[which],
             "groups": np.array([group for _, group in GROUPS]),
-            "remaining": model.mixing(start, *splits, steps),
-            "remaining_monte_carlo": model.mixing(start, *splits, steps, for_mixing),
+            "remaining": curves(model),
+            "remaining_monte_carlo": curves(model, for_mixing),
             "remaining_replicates": block_chains(
                 registry.relearner(
-                    model.name, learned_from, run.grid, lag, settings.estimator, **settings.options
+                    model.name, learned_from, model.grid, lag, settings.estimator, **settings.options
                 ),
-                lambda again: again.mixing(start, *splits, steps),
+                curves,
                 len(learned_from.times_s) - lag,
                 block_length(learned_from, splits.split_x_m, lag),
                 REPLICATES,
                 for_blocks,
             ),
             "moments_s": np.array(batch.moments_s, float),
-            "batch_share": model.densities(start, marked, at)[:, 0] / marked.sum(),
-            "batch_share_monte_carlo": model.densities(start, marked, at, for_batch)[:, 0] / marked.sum(),
+            "batch_share": shares(),
+            "batch_share_monte_carlo": shares(for_batch),
             "lag_s": np.array(model.lag_s),
             "report": np.array(json.dumps(model.report)),
         },
     )
-    LOG.info(
-        "%s chain: %d steps of %g s, a batch of %d particles", model.name, steps, model.lag_s, marked.sum()
-    )
+    LOG.info("%s chain: %d frames, steps of %g s, a batch of %d particles", model.name, length, model.lag_s,
+             marked.sum())  # fmt: skip
 
 
-def moment_steps(moments_s: list[float], lag_s: float) -> list[int]:
-    """Steps of the chain at which moments lie.
+def moment_frames(moments_s: list[float], interval_s: float) -> list[int]:
+    """Frames after the start at which moments lie.
 
     Parameters
     ----------
     moments_s : list of float
         Rising times after the start [s].
-    lag_s : float
-        Time of a step [s].
+    interval_s : float
+        Between two frames [s].
 
     Returns
     -------
@@ -107,15 +119,15 @@ def moment_steps(moments_s: list[float], lag_s: float) -> list[int]:
     Raises
     ------
     UserError
-        A moment is no multiple of the lag, or they do not rise.
+        A moment is no multiple of the interval, or they do not rise.
     """
-    steps = [round(moment / lag_s) for moment in moments_s]
-    for moment, step in zip(moments_s, steps, strict=True):
-        if abs(moment / lag_s - step) > STEP_TOLERANCE * max(step, 1):
-            raise UserError(f"figures.moments_s: {moment:g} s is no multiple of chain.lag_s, {lag_s:g} s")
-    if steps != sorted(set(steps)):
+    frames = [round(moment / interval_s) for moment in moments_s]
+    for moment, frame in zip(moments_s, frames, strict=True):
+        if abs(moment / interval_s - frame) > FRAME_TOLERANCE * max(frame, 1):
+            raise UserError(f"figures.moments_s: {moment:g} s is no multiple of the frames' {interval_s:g} s")
+    if frames != sorted(set(frames)):
         raise UserError(f"figures.moments_s: {moments_s} must rise")
-    return steps
+    return frames
 
 
 if rule := globals().get("snakemake"):

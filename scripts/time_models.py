@@ -3,6 +3,7 @@
 
 import time
 from collections.abc import Callable
+from functools import lru_cache
 from pathlib import Path
 from typing import Any
 
@@ -10,6 +11,7 @@ import numpy as np
 import pandas as pd
 
 from bedchain.chains import counting, dynamic, registry
+from bedchain.chains.between_steps import Fractions, learn_fractions, mixing_by_frame
 from bedchain.chains.chain import Chain
 from bedchain.chains.estimators import transition_matrix
 from bedchain.chains.registry import ModelSettings
@@ -18,7 +20,7 @@ from bedchain.files import write_csv
 from bedchain.measures.mixing import Splits
 from bedchain.meter import forget_peak, peak_memory_mb
 from bedchain.stage import LOG, run_stage
-from bedchain.trajectory.frames import Frames, Lag, Window, whole_steps
+from bedchain.trajectory.frames import Frames, Lag, Window
 from bedchain.trajectory.grid import Grid
 from bedchain.trajectory.realisations import open_bed
 from bedchain.trajectory.store import BedFiles, read_manifest
@@ -53,15 +55,16 @@ def time_models(
     """
     run = open_bed(bed)
     rows = [dem_row(read_manifest(dem), *comparison)]
-    learned, compared = in_memory(run.window(learning)), run.window(comparison)
+    which = comparison.frames(run.times_s)
+    of_grid = lru_cache(maxsize=1)(lambda grid: in_memory(run.frames(grid, learning.frames(run.times_s))))
     for path in transitions:
-        chain = registry.load(path)
-        model, lag = chain.name, Lag.of(chain.lag_s, compared.interval_s)
-        start = in_memory(run.up_to(comparison.start_s, lag.frames))
-        steps = whole_steps(len(compared.times_s), lag.frames)
+        chain, fractions = registry.load(path), registry.load_fractions(path)
+        model, lag = chain.name, Lag.of(chain.lag_s, run.interval_s)
+        start = in_memory(run.leading_to(chain.grid, which.start, lag.frames))
         options = settings.options.get(model, {})
-        rows += learning_rows(model, learned, run.grid, lag, settings.estimator, options)
-        rows += running_rows(model, chain, start, steps, splits, settings.seed)
+        rows += learning_rows(model, of_grid(chain.grid), chain.grid, lag, settings.estimator, options)
+        length = which.stop - 1 - which.start
+        rows += running_rows(chain, fractions, start, length, splits, settings.seed)
     write_csv(pd.DataFrame(rows), timing)
     for row in rows:
         LOG.info("%-22s %.4g s", row["stage"], row["wall_s"])
@@ -129,7 +132,11 @@ def learning_rows(
         counts = count()
         estimate: Callable[[], Any] = lambda: transition_matrix(counts, estimator)  # noqa: E731
     elif model != "dynamic":
-        learn = lambda: registry.learn(model, learning, grid, lag.frames, estimator, **options)  # noqa: E731
+
+        def learn() -> None:
+            registry.learn(model, learning, grid, lag.frames, estimator, **options)
+            learn_fractions(learning, n_cells, lag.frames, estimator)
+
         return [measured(f"{model}_learn", learn, moves, "particle moves")]
     else:
         count = lambda: (  # noqa: E731
@@ -144,17 +151,20 @@ def learning_rows(
     ]
 
 
-def running_rows(model: str, chain: Chain, start: Frames, steps: int, splits: Splits, seed: int) -> list[Row]:
-    """Exact mixing curves, and a Monte Carlo of every particle, over the comparison window.
+def running_rows(
+    chain: Chain, fractions: Fractions, start: Frames, length: int, splits: Splits, seed: int
+) -> list[Row]:
+    """Exact mixing curves at every frame, and a Monte Carlo of every particle, over the comparison window.
 
     Parameters
     ----------
-    model : str
     chain : Chain
+    fractions : Fractions
+        Of its step.
     start : Frames
         Up to the start of the window, in memory.
-    steps : int
-        Steps of the chain.
+    length : int
+        Frames of the window after its start.
     splits : Splits
     seed : int
 
@@ -162,15 +172,19 @@ def running_rows(model: str, chain: Chain, start: Frames, steps: int, splits: Sp
     -------
     list of dict
     """
+    steps = -(-length // fractions.lag)
     moves = steps * start.cells.shape[1]
 
     def monte_carlo() -> None:
         for _ in chain.paths(start, steps, np.random.default_rng(seed)):
             pass
 
+    def exact() -> None:
+        mixing_by_frame(chain, fractions, start, splits, length)
+
     return [
-        measured(f"{model}_exact", lambda: chain.mixing(start, *splits, steps), steps, "steps"),
-        measured(f"{model}_monte_carlo", monte_carlo, moves, "particle moves"),
+        measured(f"{chain.name}_exact", exact, steps, "steps"),
+        measured(f"{chain.name}_monte_carlo", monte_carlo, moves, "particle moves"),
     ]
 
 

@@ -32,7 +32,7 @@ from made.small_bed import (
     WIDTH,
 )
 from made.synthetic_bed import SERIES_NOISE
-from run_chain import moment_steps, run_chain
+from run_chain import moment_frames, run_chain
 
 STEPS = 40
 # exact propagation of a row-stochastic matrix: round-off of some tens of steps
@@ -109,12 +109,12 @@ def test_the_same_seed_gives_the_same_chain(bed, tmp_path):
     assert (tmp_path / "a").read_bytes() == (tmp_path / "b").read_bytes()
 
 
-def test_moments_must_be_steps_of_the_chain():
-    assert moment_steps([0.05, 0.30, 1.05], 0.025) == [2, 12, 42]
+def test_moments_must_be_frames():
+    assert moment_frames([0.05, 0.30, 1.05], 0.025) == [2, 12, 42]
     with pytest.raises(UserError, match=r"moments_s: 0.06 s is no multiple"):
-        moment_steps([0.05, 0.06], 0.025)
+        moment_frames([0.05, 0.06], 0.025)
     with pytest.raises(UserError, match="must rise"):
-        moment_steps([0.30, 0.05], 0.025)
+        moment_frames([0.30, 0.05], 0.025)
 
 
 def test_mixing_table_is_long_with_the_named_columns(bed):

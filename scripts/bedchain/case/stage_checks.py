@@ -15,6 +15,7 @@ COLOURS = tuple(
     f"figures.{name}_colour"
     for name in (
         "cells", "cost", "dem", "static", "dynamic", "left", "right", "velocity_class", "jump", "recurrence",
+        "chosen",
     )
 )  # fmt: skip
 MAPS = ("figures.distribution_colour_map", "figures.snapshot_colour_map")

@@ -7,7 +7,7 @@ cells, cells by velocity class) are a `MarkovChain`; a model may be any other cl
 """
 
 from collections.abc import Callable
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from pathlib import Path
 from typing import Any
 
@@ -15,6 +15,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from bedchain.chains import dynamic, jump, recurrence, static, velocity_class
+from bedchain.chains.between_steps import Fractions
 from bedchain.chains.chain import Chain
 from bedchain.chains.markov_chain import MarkovChain
 from bedchain.errors import DataError
@@ -36,6 +37,7 @@ READERS: dict[str, Callable[[dict[str, NDArray[Any]]], Chain]] = {
     "velocity_class": MarkovChain.from_arrays,
     "jump": jump.JumpChain.from_arrays,
     "recurrence": recurrence.RecurrenceChain.from_arrays,
+    "chosen": MarkovChain.from_arrays,
 }
 # Models that follow each particle through the window.
 WHOLE = {"jump", "recurrence"}
@@ -46,6 +48,10 @@ RELEARNERS: dict[str, Callable[..., Callable[[NDArray[np.int64]], Chain]]] = {
     "velocity_class": velocity_class.relearner,
     "recurrence": recurrence.relearner,
 }
+
+# The static chain with the lag and the cells of choice.csv, beside those of the case: learned as its model.
+CHOSEN = "chosen"
+LEARNED_AS = {CHOSEN: "static"}
 
 
 @dataclass(frozen=True)
@@ -104,14 +110,16 @@ def learn(
     DataError
         The name is unknown, or the data cannot be used.
     """
-    if name not in LEARNERS:
+    model = LEARNED_AS.get(name, name)
+    if model not in LEARNERS:
         raise DataError(f"model {name!r} is unknown: choose from {', '.join(LEARNERS)}")
-    if name in WHOLE and any((now < 0).any() for now in frames.cells):
+    if model in WHOLE and any((now < 0).any() for now in frames.cells):
         raise DataError(
             f"particles come and go in the learning window, which the {name} chain cannot learn from: take "
             f"{', '.join(sorted(LEARNERS.keys() - WHOLE))}"
         )
-    return LEARNERS[name](frames, grid, lag=lag, estimator=estimator, step_weights=step_weights, **options)
+    chain = LEARNERS[model](frames, grid, lag=lag, estimator=estimator, step_weights=step_weights, **options)
+    return replace(chain, name=name) if isinstance(chain, MarkovChain) else chain
 
 
 def relearner(
@@ -126,14 +134,21 @@ def relearner(
     callable
         From (n_frames - lag,) int weights to a `Chain`.
     """
+    name = LEARNED_AS.get(name, name)
     if name in RELEARNERS:
         return RELEARNERS[name](frames, grid, lag=lag, estimator=estimator, **options)
     return lambda weights: learn(name, frames, grid, lag, estimator, weights, **options)
 
 
-def save(chain: Chain, path: Path | str) -> None:
-    """Write a chain for `load`, exactly; the file is complete or not there."""
-    write_arrays(path, {"name": np.array(chain.name), **chain.arrays()})
+def save(chain: Chain, path: Path | str, fractions: Fractions | None = None) -> None:
+    """Write a chain for `load`, and its fractions of a step; the file is complete or not there."""
+    of_step = {} if fractions is None else fractions.arrays()
+    write_arrays(path, {"name": np.array(chain.name), **chain.arrays(), **of_step})
+
+
+def load_fractions(path: Path | str) -> Fractions:
+    """Matrices for fractions of a step, written by `save` beside a chain."""
+    return Fractions.from_arrays(read_arrays(path))
 
 
 def load(path: Path | str) -> Chain:
