@@ -42,19 +42,36 @@ logged() {
     fail "$what failed (above: the last lines of $log_file)"
 }
 
+# clear_ours FOLDER: empties FOLDER, or makes it, if it holds the mark of `step`: bedchain made it. Of a link only
+# the link goes. Anything else stays, with an error.
+clear_ours() {
+    if [ -L "$1" ]; then
+        rm "$1"
+    elif [ -f "$1/.stamp" ] || [ -f "$1/.unfinished" ]; then
+        rm -rf "$1"
+    elif [ -e "$1" ]; then
+        rmdir "$1" 2>/dev/null || fail "the set-up needs the place of $1, which was not made by bedchain" \
+            "(no .stamp in it): it stays as it is; move it away and run again"
+    fi
+    mkdir -p "$1"
+    : >"$1/.unfinished"
+}
+
 # digest FILE...: one short hash of the files' contents.
 digest() { cat "$@" | sha256sum | cut -c 1-16; }
 
-# step FOLDER KEY WHAT COMMAND...: makes FOLDER by COMMAND unless its stamp holds KEY already.
+# step FOLDER KEY WHAT COMMAND...: makes FOLDER by COMMAND unless its stamp holds KEY already. Until COMMAND is done the
+# mark is .unfinished.
 step() {
     folder=$1 key=$2 what=$3
     shift 3
     [ "$key" != "$(cat "$folder/.stamp" 2>/dev/null)" ] || return 0
     say "$what"
     started=$(date +%s)
-    rm -f "$folder/.stamp"
+    [ ! -f "$folder/.stamp" ] || mv "$folder/.stamp" "$folder/.unfinished"
     "$@"
     echo "$key" >"$folder/.stamp"
+    rm -f "$folder/.unfinished"
     say "$folder is ready ($(($(date +%s) - started)) s)"
 }
 

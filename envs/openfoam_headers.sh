@@ -40,10 +40,10 @@ unpack() {
 mkdir -p "$1"
 work=$(cd "$1" && pwd) target=$2
 need_space "$work" "$ROOM_MB" "OpenFOAM's headers"
-rm -rf "$target" "${work:?}"/*
+rm -rf "${work:?}/lists" "$work/package" "$work/sources" "$work/include"
+clear_ours "$target"
 download
 check_source_package "$work/package"
 unpack
-mkdir -p "$target"
 mv "$work/include" "$target/include"
-rm -rf "$work"
+rm -rf "$work/lists" "$work/package" "$work/sources"

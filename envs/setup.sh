@@ -26,7 +26,7 @@ python_packages() {
         fail "$PYTHON is $("$PYTHON" -V): Python 3.11 or newer is needed (Debian 12 has it)"
     need_space . "$VENV_MB" 'Python packages'
     need_space "${TMPDIR:-/tmp}" "$TEMP_MB" "pip's downloads"
-    rm -rf .venv
+    clear_ours .venv
     "$PYTHON" -m venv .venv
     lock_entry setuptools >.setup/build_tools.txt # for the one package that comes as source only
     pip_install -r .setup/build_tools.txt

@@ -19,7 +19,7 @@ from bedchain.comparison.metrics import (
     report_metrics,
 )
 from bedchain.dem.series import read_series
-from bedchain.errors import UserError
+from bedchain.errors import UserError, make_again
 from bedchain.files import read_arrays, write_csv
 from bedchain.measures.batch import observed_shares
 from bedchain.measures.mixing import Splits, remaining_from_positions, sides
@@ -100,7 +100,9 @@ def compare_mixing(
         observed = observed_shares(run.case_cells, chain["moments_s"], comparison.start_s, batch_height_m)
         if len(chain["times_s"]) != len(dem):
             start_s, end_s = comparison
-            raise UserError(f"{path} covers another window than {start_s:g} to {end_s:g} s: delete it")
+            raise UserError(
+                f"{path} covers another window than {start_s:g} to {end_s:g} s; {make_again(path)}"
+            )
         for source, how, replicates in (
             (model, "", chain["remaining_replicates"]),
             (f"{model}_monte_carlo", "_monte_carlo", None),

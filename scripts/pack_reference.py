@@ -59,7 +59,7 @@ def pack_reference(case_file: Path, results: Path, target: Path, level_m: float 
     """
     case, schema = load_case(case_file), load_schema(SCHEMA_FILE)
     if target.exists():
-        raise UserError(f"{target} is there: an archive is made once; delete it to make another")
+        raise UserError(f"{target} is there: an archive is made once; move it away to make another")
     start_s, end_s = case["learning"]["start_s"], case["comparison"]["end_s"]
     manifest = finished_manifest(results, case)
     check_parameters(results, case, schema)
@@ -95,8 +95,8 @@ def pack_reference(case_file: Path, results: Path, target: Path, level_m: float 
             "packages": {"debian": debian_packages(), "python": python_packages()},
             "machine": machine(),
             "files": {
-                file.name: {"sha256": archive.file_hash(file), "bytes": file.stat().st_size}
-                for file in sorted(part.iterdir())
+                name: {"sha256": archive.file_hash(part / name), "bytes": (part / name).stat().st_size}
+                for name in sorted((archive.POSITIONS, archive.SERIES, archive.REPEATS, archive.GAS))
             },
         }
         write_text(part / archive.PROVENANCE, json.dumps(provenance, indent=1) + "\n")

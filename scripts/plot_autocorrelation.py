@@ -8,7 +8,7 @@ import pandas as pd
 from matplotlib import pyplot as plt
 from matplotlib.axes import Axes
 
-from bedchain.errors import UserError
+from bedchain.errors import UserError, make_again
 from bedchain.figures.model_styles import BASELINE, label, model_styles
 from bedchain.figures.style import DOUBLE_COLUMN_IN, LINE_COLOUR, FigureFiles, figure_style
 from bedchain.files import write_csv
@@ -36,7 +36,7 @@ def plot_autocorrelation(lagrangian: Path, files: FigureFiles, dem_colour: str) 
     """
     table = pd.read_csv(lagrangian)
     if "dem" not in set(table["source"]):
-        raise UserError(f"{lagrangian} lacks the DEM; delete it and run again")
+        raise UserError(f"{lagrangian} lacks the DEM; {make_again(lagrangian)}")
     with figure_style():
         figure, panels = plt.subplots(2, 2, figsize=(DOUBLE_COLUMN_IN, 4.8), sharex="col")
         for (auto, msd), (axis, name) in zip(panels, ROWS.items(), strict=True):

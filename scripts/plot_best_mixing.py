@@ -8,7 +8,7 @@ import pandas as pd
 from matplotlib import pyplot as plt
 from matplotlib.axes import Axes
 
-from bedchain.errors import UserError
+from bedchain.errors import UserError, make_again
 from bedchain.figures.model_styles import BASELINE, label, model_styles
 from bedchain.figures.style import DOUBLE_COLUMN_IN, FigureFiles, figure_style
 from bedchain.files import write_csv
@@ -40,7 +40,7 @@ def plot_best_mixing(
     chosen = pd.read_csv(selection).query("best == 1")["model"].item()
     table = pd.read_csv(mixing)
     if not {"dem", BASELINE, chosen} <= {*table["source"]}:
-        raise UserError(f"{mixing} lacks curves of dem, {BASELINE} or {chosen}; delete it and run again")
+        raise UserError(f"{mixing} lacks curves of dem, {BASELINE} or {chosen}; {make_again(mixing)}")
     repeats = table["source"].str.startswith(REPEAT)
     kept = table[table["source"].isin(["dem", BASELINE, chosen, f"{chosen}{MONTE_CARLO}"]) | repeats]
     with figure_style():

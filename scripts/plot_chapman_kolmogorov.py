@@ -13,7 +13,7 @@ from matplotlib.lines import Line2D
 from matplotlib.patches import Patch
 from matplotlib.ticker import FuncFormatter, MaxNLocator
 
-from bedchain.errors import UserError
+from bedchain.errors import UserError, make_again
 from bedchain.figures.style import DOUBLE_COLUMN_IN, FigureFiles, figure_style
 from bedchain.files import write_csv
 from bedchain.stage import run_stage
@@ -53,7 +53,7 @@ def plot_chapman_kolmogorov(diagnostics: Path, files: FigureFiles, colours: dict
     table = pd.read_csv(diagnostics).query("quantity in @CURVES")
     models = [source for source in colours if source != "dem" and source in set(table["source"])]
     if not models or set(table["source"]) != {"dem", *models}:
-        raise UserError(f"{diagnostics} lacks curves of {', '.join(colours)}; delete it and run again")
+        raise UserError(f"{diagnostics} lacks curves of {', '.join(colours)}; {make_again(diagnostics)}")
     lags = sorted(table["lag_s"].dropna().unique())[::LAG_STRIDE][: len(STYLES)]
     with figure_style():
         figure, panels = plt.subplots(

@@ -73,7 +73,7 @@ def cost_table(timing: pd.DataFrame) -> pd.DataFrame:
             rows.append((model, "learn", sum(wall[f"{model}_{part}"] for part in parts)))
             rows += [(model, kind, wall[f"{model}_{kind}"]) for kind in ("exact", "monte_carlo")]
     except KeyError as error:
-        raise UserError(f"timing.csv has no stage {error}; delete it and run time_models again") from error
+        raise UserError(f"timing.csv has no stage {error}; make it again, by ./run --force") from error
     table = pd.DataFrame(rows, columns=["model", "kind", "wall_s"])
     table["dem_over_this_1"] = wall["dem"] / table["wall_s"]
     return table

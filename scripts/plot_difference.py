@@ -10,7 +10,7 @@ from matplotlib.axes import Axes
 from matplotlib.collections import PolyCollection, QuadMesh
 from matplotlib.colors import LinearSegmentedColormap, Normalize
 
-from bedchain.errors import UserError
+from bedchain.errors import UserError, make_again
 from bedchain.figures.style import DOUBLE_COLUMN_IN, FigureFiles, close_frame, figure_style, shown_height
 from bedchain.files import read_arrays, write_csv
 from bedchain.measures.batch import total_variation
@@ -54,7 +54,7 @@ def plot_difference(cells: Path, static: Path, dynamic: Path, files: FigureFiles
     one, two = read_arrays(static), read_arrays(dynamic)
     moments, shares = one["moments_s"], (one["batch_share"], two["batch_share"])
     if not np.array_equal(moments, two["moments_s"]):
-        raise UserError(f"{static} and {dynamic} have other moments: delete both and run again")
+        raise UserError(f"{static} and {dynamic} have other moments; {make_again(static, dynamic)}")
     distances = np.array([total_variation(*pair) for pair in zip(*shares, strict=True)])
     LOG.info(
         "total variation of static and dynamic chain: %s, mean %.4f", distances.round(4), distances.mean()

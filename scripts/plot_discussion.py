@@ -10,7 +10,7 @@ from matplotlib import pyplot as plt
 from matplotlib.axes import Axes
 from matplotlib.ticker import LogLocator, NullLocator
 
-from bedchain.errors import UserError
+from bedchain.errors import UserError, make_again
 from bedchain.figures.style import DOUBLE_COLUMN_IN, FigureFiles, figure_style
 from bedchain.files import write_csv
 from bedchain.stage import run_stage
@@ -53,7 +53,7 @@ def plot_discussion(
         "lag_s": np.isclose(errors["lag_s"], own_lag_s),
     }
     if not (own["cell_m"] & own["lag_s"]).any():
-        raise UserError(f"{discussion} is of other cells or another lag; delete it and run again")
+        raise UserError(f"{discussion} is of other cells or another lag; {make_again(discussion)}")
     with figure_style():
         figure, panels = plt.subplots(1, 3, figsize=(DOUBLE_COLUMN_IN, 2.9))
         _draw_errors(panels[0], errors[own["lag_s"]], "cell_m", colours, CM)

@@ -10,7 +10,7 @@ from matplotlib.axes import Axes
 from matplotlib.patches import Patch
 
 from bedchain.comparison.curves import ChainFiles
-from bedchain.errors import UserError
+from bedchain.errors import UserError, make_again
 from bedchain.figures.style import DOUBLE_COLUMN_IN, FigureFiles, figure_style
 from bedchain.files import CSV_DIGITS, read_arrays, write_csv
 from bedchain.stage import run_stage
@@ -55,7 +55,7 @@ def plot_mixing(
     """
     table = pd.read_csv(mixing).query("direction == @direction")
     if table.empty:
-        raise UserError(f"{mixing} has no curves of direction {direction!r}; delete it and run again")
+        raise UserError(f"{mixing} has no curves of direction {direction!r}; {make_again(mixing)}")
     table = table.merge(bands(chains.by_model()), how="left", on=["time_s", "source", "group"])
     table = with_realisations(table)
     shares, mixed = (_shares(pd.read_csv(metrics), when) for when in ("start", "mean"))

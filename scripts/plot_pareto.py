@@ -10,7 +10,7 @@ from matplotlib.axes import Axes
 from matplotlib.lines import Line2D
 from matplotlib.ticker import NullFormatter
 
-from bedchain.errors import UserError
+from bedchain.errors import UserError, make_again
 from bedchain.figures.model_styles import BASELINE, ModelStyle, label, model_styles
 from bedchain.figures.style import DOUBLE_COLUMN_IN, LINE_COLOUR, FigureFiles, figure_style
 from bedchain.files import write_csv
@@ -44,7 +44,7 @@ def plot_pareto(
     """
     table = pareto_table(pd.read_csv(scores), pd.read_csv(selection), baseline_cell_m, baseline_lag_s)
     if not (table["panel"] != "validation").any():
-        raise UserError(f"{scores} holds no test of a model; delete it and run again")
+        raise UserError(f"{scores} holds no test of a model; {make_again(scores)}")
     styles = model_styles(table["source"])
     with figure_style():
         figure, panels = plt.subplots(1, 3, figsize=(DOUBLE_COLUMN_IN, 3.0), sharex=True, sharey=True)

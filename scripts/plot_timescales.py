@@ -11,7 +11,7 @@ from matplotlib.axes import Axes
 from matplotlib.lines import Line2D
 from matplotlib.ticker import FuncFormatter, NullFormatter
 
-from bedchain.errors import UserError
+from bedchain.errors import UserError, make_again
 from bedchain.figures.style import DOUBLE_COLUMN_IN, LINE_COLOUR, FigureFiles, figure_style
 from bedchain.files import write_csv
 from bedchain.stage import run_stage
@@ -45,7 +45,7 @@ def plot_timescales(diagnostics: Path, files: FigureFiles, colours: dict[str, st
     """
     table = pd.read_csv(diagnostics).query("quantity == 'implied_timescale'")
     if table.empty or not set(table["source"]) <= set(colours):
-        raise UserError(f"{diagnostics} lacks timescales of {', '.join(colours)}; delete it and run again")
+        raise UserError(f"{diagnostics} lacks timescales of {', '.join(colours)}; {make_again(diagnostics)}")
     colours = {model: colour for model, colour in colours.items() if model in set(table["source"])}
     table = processes(table)
     lags = table["lag_s"].unique()

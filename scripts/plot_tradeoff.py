@@ -10,7 +10,7 @@ from matplotlib import pyplot as plt
 from matplotlib.axes import Axes
 from matplotlib.ticker import LogLocator, NullFormatter, NullLocator
 
-from bedchain.errors import UserError
+from bedchain.errors import UserError, make_again
 from bedchain.figures.style import DOUBLE_COLUMN_IN, FigureFiles, figure_style
 from bedchain.files import write_csv
 from bedchain.stage import run_stage
@@ -41,7 +41,7 @@ def plot_tradeoff(tradeoff: Path, files: FigureFiles) -> None:
     """
     table = shown_rows(pd.read_csv(tradeoff, dtype={"problem": str, "preset": str}))
     if table.empty:
-        raise UserError(f"{tradeoff} holds no chain that went well; delete it and run again")
+        raise UserError(f"{tradeoff} holds no chain that went well; {make_again(tradeoff)}")
     unit = "noise floors" if table["unit"].iloc[0] == "floors" else "1"
     with figure_style():
         figure, panels = plt.subplots(2, 3, figsize=(DOUBLE_COLUMN_IN, 5.4))

@@ -250,6 +250,36 @@ def test_interrupted_step_does_not_look_finished(tmp_path: Path) -> None:
     assert "making it" in functions_of_common(f"step '{tmp_path}' one 'making it' true").stderr
 
 
+@pytest.mark.parametrize("mark", [".stamp", ".unfinished"])
+def test_what_the_set_up_made_before_is_made_anew(tmp_path: Path, mark: str) -> None:
+    (tmp_path / ".venv" / "lib").mkdir(parents=True)
+    (tmp_path / ".venv" / mark).touch()
+    assert functions_of_common(f"clear_ours '{tmp_path}/.venv'; clear_ours '{tmp_path}/new'").returncode == 0
+    for folder in (".venv", "new"):
+        assert [file.name for file in (tmp_path / folder).iterdir()] == [".unfinished"]
+
+
+def test_a_users_own_environment_stays_as_it_is(tmp_path: Path) -> None:
+    """Some editors make a .venv in the folder of a project."""
+    (tmp_path / ".venv" / "lib").mkdir(parents=True)
+    (tmp_path / ".venv" / "lib" / "thesis.py").touch()
+    outcome = functions_of_common(f"clear_ours '{tmp_path}/.venv'")
+    assert outcome.returncode == 1
+    assert (
+        ".venv, which was not made by bedchain (no .stamp in it): it stays as it is; move it"
+        in outcome.stderr
+    )
+    assert (tmp_path / ".venv" / "lib" / "thesis.py").exists()
+
+
+def test_of_a_link_only_the_link_goes(tmp_path: Path) -> None:
+    (tmp_path / "shared").mkdir()
+    (tmp_path / "shared" / ".stamp").touch()
+    (tmp_path / ".venv").symlink_to(tmp_path / "shared")
+    assert functions_of_common(f"clear_ours '{tmp_path}/.venv'").returncode == 0
+    assert not (tmp_path / ".venv").is_symlink() and (tmp_path / "shared" / ".stamp").exists()
+
+
 @pytest.mark.parametrize("content", [b"as described", b"broken"])
 def test_source_package_is_checked_by_its_own_checksums(tmp_path: Path, content: bytes) -> None:
     digest = hashlib.sha256(b"as described").hexdigest()

@@ -2,6 +2,7 @@
 """Errors that a user can put right, reported as one message without a traceback."""
 
 import difflib
+import shlex
 import sys
 from collections.abc import Iterable, Iterator
 from contextlib import contextmanager
@@ -71,6 +72,11 @@ def guess(word: str, known: Iterable[str]) -> str:
     """The known word that was probably meant, as an end of a message; empty where none is near."""
     near = nearest(word, known)
     return f"; did you mean {near}?" if near else ""
+
+
+def make_again(*files: Path | str) -> str:
+    """Remedy of a message: the line that makes files of a run again, without anything deleted."""
+    return f"make it again: {shlex.join(['./run', '--force', *map(str, files)])}"
 
 
 @contextmanager

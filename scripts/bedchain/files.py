@@ -3,7 +3,6 @@
 
 import fcntl
 import os
-import shutil
 import zipfile
 from collections.abc import Iterator
 from contextlib import contextmanager
@@ -16,6 +15,7 @@ from numpy.lib import format as npy_format
 from numpy.typing import NDArray
 
 from bedchain.errors import DataError, UserError
+from bedchain.work_folders import OURS, fresh_folder
 
 
 def write_arrays(path: Path | str, arrays: dict[str, NDArray[Any]]) -> None:
@@ -118,7 +118,7 @@ def refuse_special_file(path: Path) -> None:
         It is one.
     """
     if path.exists() and not (path.is_file() or path.is_dir()):
-        raise DataError(f"{path} is a special file (pipe, socket or device), not data; remove it")
+        raise DataError(f"{path} is a special file (pipe, socket or device), not data; move it away")
 
 
 CSV_DIGITS = "%.8g"
@@ -215,11 +215,10 @@ def locked_folder(folder: Path) -> Iterator[None]:
 @contextmanager
 def atomic_folder(target: Path) -> Iterator[Path]:
     """A work folder that becomes ``target`` if the work succeeds; the remains of a failed try are removed."""
-    part = target.with_name(target.name + ".part")
-    shutil.rmtree(part, ignore_errors=True)
-    part.mkdir(parents=True)
+    part = fresh_folder(target.with_name(target.name + ".part"))
     yield part
     for file in part.rglob("*"):
         if file.is_file():
             sync(file)
     os.replace(part, target)
+    (target / OURS).unlink()

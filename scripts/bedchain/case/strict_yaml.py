@@ -85,7 +85,7 @@ def read_yaml(file: Path) -> tuple[Any, Lines]:
         loader = StrictLoader(text)
     except yaml.reader.ReaderError as error:
         wrong = f"the character {chr(error.character)!a} is not allowed"
-        raise _no_yaml(file, wrong, "remove it", text.count("\n", 0, error.position) + 1) from None
+        raise _no_yaml(file, wrong, "take it out", text.count("\n", 0, error.position) + 1) from None
     try:
         root = loader.get_single_node()
         reader = _Reader(loader)
@@ -162,7 +162,7 @@ class _Reader:
         text, kind = node.value, node.tag.removeprefix(TAG)
         if kind == "str":
             if control := next((letter for letter in text if _is_control(letter)), None):
-                self._note(node, path, f"has the character {control!a} in it", "remove it")
+                self._note(node, path, f"has the character {control!a} in it", "take it out")
             return text
         if kind not in PLAIN or not PLAIN[kind][0].match(text):
             return self._refuse_tag(node, path)

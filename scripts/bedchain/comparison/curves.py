@@ -36,9 +36,7 @@ def curves_of(table: pd.DataFrame, source: str, n_times: int) -> NDArray[np.floa
     rows = table[table["source"] == source]
     columns = [rows[rows["group"] == group].sort_values("time_s") for _, group in GROUPS]
     if {len(column) for column in columns} != {n_times}:
-        raise UserError(
-            f"{source}: {len(columns[0])} times, {n_times} expected; delete its mixing.csv and run again"
-        )
+        raise UserError(f"{source}: {len(columns[0])} times, {n_times} expected; make its mixing.csv again")
     return np.column_stack([column["fraction_remaining_1"] for column in columns])
 
 

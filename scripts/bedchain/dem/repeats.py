@@ -67,8 +67,8 @@ def segment_that_ends(manifest: dict[str, Any], time_s: float) -> Path:
     if abs(nearest - time_s) > 0.5 * float(manifest["dem_step_s"]):
         raise UserError(
             f"no segment of the run ends at {time_s:g} s, where the repeats start (comparison.start_s): take "
-            f"{nearest:g} s, the nearest end, or a time.segment_s that divides {time_s:g} s, and delete "
-            "the run's segments from there on"
+            f"{nearest:g} s, the nearest end, or a time.segment_s that divides {time_s:g} s, and move "
+            "the run's segments from there on away"
         )
     return ends[nearest]
 

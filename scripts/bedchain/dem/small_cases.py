@@ -15,6 +15,7 @@ from bedchain.case.parameters import Parameter, liggghts_text, openfoam_text, so
 from bedchain.case.schema import load_schema
 from bedchain.dem.particle_files import read_frames, write_particles
 from bedchain.dem.processes import run_deck, run_logged
+from bedchain.work_folders import fresh_folder
 
 DECKS = Path("liggghts_inputs")
 GAS_CASE = Path("openfoam_case")
@@ -71,8 +72,7 @@ def write_inputs(setup: Setup) -> dict[str, Any]:
     dict
         The solvers' parameters by name.
     """
-    shutil.rmtree(setup.folder, ignore_errors=True)
-    setup.folder.mkdir(parents=True)
+    fresh_folder(setup.folder)
     file = setup.folder / "case.yaml"
     file.write_text(yaml.safe_dump(case_of(setup), sort_keys=False), encoding="utf-8")
     numbers = {"frozen": 0} | setup.numbers

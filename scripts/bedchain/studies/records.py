@@ -3,7 +3,7 @@
 
 import hashlib
 import json
-import shutil
+import re
 from collections.abc import Callable, Sequence
 from pathlib import Path
 from typing import TypeVar
@@ -14,6 +14,8 @@ Result = TypeVar("Result")
 
 BLOCK_BYTES = 1 << 22
 STAMP_DIGITS = 16
+STAMP = re.compile(rf"[0-9a-f]{{{STAMP_DIGITS}}}")
+RECORD = re.compile(rf"\.?{STAMP.pattern}(\.[0-9]+)?\.json")  # also of a write that was killed
 
 
 def stamp(files: Sequence[Path], values: dict[str, object]) -> str:
@@ -62,10 +64,16 @@ def remembered(record: Path, make: Callable[[], Result]) -> Result:
 
 
 def remove_other_results(folder: Path) -> Path:
-    """Delete the other folders beside this one (results of other data or code); make it and return it."""
-    if folder.parent.exists():
-        for other in folder.parent.iterdir():
-            if other != folder and other.is_dir():
-                shutil.rmtree(other)
+    """Remove the records in folders beside this one (results of other data or code); make it and return it.
+
+    Only files and folders that are named as records are go: anything else beside them stays.
+    """
+    for other in sorted(folder.parent.glob("*")):
+        if other != folder and STAMP.fullmatch(other.name) and other.is_dir() and not other.is_symlink():
+            for file in other.iterdir():
+                if RECORD.fullmatch(file.name):
+                    file.unlink()
+            if not any(other.iterdir()):
+                other.rmdir()
     folder.mkdir(parents=True, exist_ok=True)
     return folder

@@ -7,7 +7,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from bedchain.errors import DataError, UserError
+from bedchain.errors import DataError, UserError, make_again
 from bedchain.files import atomic_file, map_array, write_npy_header
 from bedchain.trajectory.chunks import read_frames
 from bedchain.trajectory.grid import OUTSIDE, Grid
@@ -110,7 +110,7 @@ def open_cells(path: Path) -> CellStore:
             grid = Grid.from_arrays(small)
         cells = map_array(path, "cells")
     except (OSError, DataError, ValueError, KeyError, zipfile.BadZipFile) as error:
-        raise UserError(f"{path}: not readable as cells ({error}); delete it and run again") from error
+        raise UserError(f"{path}: not readable as cells ({error}); {make_again(path)}") from error
     return CellStore(cells, times_s, grid)
 
 

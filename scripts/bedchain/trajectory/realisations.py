@@ -250,7 +250,7 @@ def open_repeats(paths: list[Path], main: Realisation) -> list[Realisation]:
             if abs(number - wanted) > TIME_TOLERANCE * wanted:
                 raise UserError(
                     f"{path} is no repeat of the bed: {number:g} {quantity}, {wanted:g} expected; "
-                    "remove its folder or simulate it with the case's numbers"
+                    "move its folder away, or simulate it with the case's numbers"
                 )
     return [_with_past(run, main) for run in runs]
 
@@ -291,7 +291,7 @@ def part_of(run: Realisation, start_s: float, end_s: float) -> slice:
     if share < 0.5:
         raise UserError(
             f"{run.name} lacks frames: it ends at {last_s:g} s and holds {share:.0%} of the window from "
-            f"{start_s:g} s to {end_s:g} s, at least half is needed; simulate it further or remove its folder"
+            f"{start_s:g} s to {end_s:g} s, at least half is needed; simulate it further or move it away"
         )
     LOG.info("%s ends at %g s: %.0f %% of the window to %g s is used", run.name, last_s, 100 * share, end_s)
     return window(run.times_s, start_s, last_s)

@@ -26,7 +26,7 @@ from typing import Any
 import numpy as np
 from tqdm import tqdm
 
-from bedchain.errors import UserError
+from bedchain.errors import UserError, make_again
 from bedchain.files import (
     atomic_file,
     path_inside,
@@ -248,7 +248,7 @@ def open_trajectory(path: Path, metadata_path: Path) -> tuple[np.ndarray, dict[s
     store = np.load(path, mmap_mode="r")
     shape = (len(metadata["times_s"]), len(metadata["columns"]), metadata["number"])
     if store.shape != shape:
-        raise UserError(f"{path} has the shape {store.shape}, {shape} expected: delete it and run again")
+        raise UserError(f"{path} has the shape {store.shape}, {shape} expected; {make_again(path)}")
     return store, metadata
 
 

@@ -7,6 +7,7 @@ import pytest
 from bedchain.dem import small_cases
 from bedchain.dem.segments import read_parameters
 from bedchain.dem.small_cases import Setup, run_gas, run_particles, write_inputs
+from bedchain.work_folders import work_folder
 from made import ROOT
 from made.synthetic_bed import write_binary_dump
 
@@ -22,7 +23,7 @@ def setup(tmp_path, monkeypatch):
 
 
 def test_inputs_are_those_of_the_case_with_the_numbers_of_the_check(setup):
-    setup.folder.mkdir()
+    work_folder(setup.folder)
     (setup.folder / "old").touch()
     given = write_inputs(setup)
     assert not (setup.folder / "old").exists()

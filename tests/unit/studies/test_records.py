@@ -14,9 +14,22 @@ def test_a_stamp_changes_with_data_and_settings_and_old_results_go(tmp_path):
     assert stamp([file], {"lag": 1}) == first and stamp([file], {"lag": 2}) != first
     file.write_bytes(b"2")
     assert stamp([file], {"lag": 1}) != first
-    (remove_other_results(tmp_path / "kept" / first) / "result").write_text("x")
+    record_of(remove_other_results(tmp_path / "kept" / first), "static 40").write_text("x")
     remove_other_results(tmp_path / "kept" / "new")
     assert [folder.name for folder in (tmp_path / "kept").iterdir()] == ["new"]
+
+
+def test_what_is_no_record_stays_beside_the_records(tmp_path):
+    """A user's notes among old records, folders of other names, and a link to a folder elsewhere."""
+    old, elsewhere, here = "0123456789abcdef", tmp_path / "elsewhere", tmp_path / "kept"
+    for folder in (here / old, here / "my thesis", elsewhere):
+        folder.mkdir(parents=True)
+        record_of(folder, "static 40").write_text("{}")
+    (here / old / "notes.txt").write_text("x")
+    (here / "fedcba9876543210").symlink_to(elsewhere)
+    remove_other_results(here / "new")
+    assert [file.name for file in (here / old).iterdir()] == ["notes.txt"]
+    assert record_of(here / "my thesis", "static 40").exists() and record_of(elsewhere, "static 40").exists()
 
 
 def test_a_result_is_made_once_and_a_failure_is_not_kept(tmp_path):

@@ -2,7 +2,6 @@
 """The bed that all codes run: the numbers of a case, and moving particles from the decks of this project."""
 
 import hashlib
-import shutil
 from dataclasses import dataclass, replace
 from pathlib import Path
 
@@ -18,6 +17,7 @@ from bedchain.dem.segments import COLUMNS, RESTART, SETTLED, STAMP_DIGITS, input
 from bedchain.errors import UserError
 from bedchain.files import atomic_folder
 from bedchain.trajectory.dumps import read_dump
+from bedchain.work_folders import fresh_folder
 
 DECKS = Path("liggghts_inputs")
 OWN_DECKS = (DECKS / "include", DECKS / "verify")
@@ -95,8 +95,7 @@ def write_inputs(bed: PeerBed, folder: Path, **numbers: float | str) -> None:
     **numbers
         Parameters to replace or add.
     """
-    shutil.rmtree(folder, ignore_errors=True)
-    folder.mkdir(parents=True)
+    fresh_folder(folder)
     parameters = write_parameters(bed, folder, frozen=0, **numbers)
     write_particles(folder / "particles.data", bed.particles, {item.name: item.value for item in parameters})
 

@@ -18,6 +18,7 @@ from bedchain.studies.peers import bedfoam, dpmfoam, lammps, liggghts, yade
 from bedchain.studies.peers.bed import PeerBed, fluidized_bed
 from bedchain.studies.peers.peer import Outcome, Peer
 from bedchain.studies.records import remembered
+from bedchain.work_folders import discard_folder, work_folder
 
 CASES = Path("cases")
 STAT = Path("/proc/stat")
@@ -105,7 +106,7 @@ def measure(peer: Peer, bed: PeerBed, folder: Path, duration_s: float) -> tuple[
 def run_once(peer: Peer, bed: PeerBed, folder: Path, duration_s: float, repeat: int) -> PeerRun:
     """A run from its record, or a new one; a code that fails leaves a note and no record."""
     record = record_file(folder, bed, peer, duration_s, repeat)
-    work = folder / bed.name / "work" / record.stem
+    work = work_folder(folder / bed.name / "work") / record.stem
 
     def run() -> dict[str, Any]:
         outcome, others = measure(peer, bed, work, duration_s)
@@ -115,7 +116,7 @@ def run_once(peer: Peer, bed: PeerBed, folder: Path, duration_s: float, repeat: 
         result = remembered(record, run)
     except UserError as error:
         return PeerRun(bed.name, peer.name, repeat, None, note=f"failed: {error}")
-    shutil.rmtree(work, ignore_errors=True)
+    discard_folder(work)
     return PeerRun(**result | {"outcome": Outcome(**result["outcome"])})
 
 

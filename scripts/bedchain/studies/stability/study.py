@@ -2,7 +2,6 @@
 """Stability study: each setting in its own process for a limited time, with its verdict on record."""
 
 import re
-import shutil
 import time
 import traceback
 from collections.abc import Callable, Mapping
@@ -20,6 +19,7 @@ from bedchain.files import locked_folder
 from bedchain.studies.records import remembered
 from bedchain.studies.stability.settings import Known, StabilitySetting
 from bedchain.studies.stability.verdict import CRASHED, FAULTS, HUNG, Verdict
+from bedchain.work_folders import discard_folder, work_folder
 
 LONGEST_S = 900.0  # of wall time for one setting; the longest takes a minute or two on an idle machine
 KEPT, WORK = "kept", "work"
@@ -89,7 +89,7 @@ def try_setting(
     setting: StabilitySetting, folder: Path, record: Path, known: Known, longest_s: float
 ) -> tuple[Verdict, float]:
     """Verdict and its wall time [s], from its record or by a run."""
-    work = folder / WORK / slug(setting)
+    work = work_folder(folder / WORK) / slug(setting)
 
     def run() -> dict[str, Any]:
         start = time.monotonic()
@@ -99,7 +99,7 @@ def try_setting(
     result = remembered(record, run)
     verdict = Verdict(**result["verdict"])
     if verdict.outcome not in FAULTS:  # of which the logs are wanted
-        shutil.rmtree(work, ignore_errors=True)
+        discard_folder(work)
     return verdict, result["wall_s"]
 
 
