@@ -10,7 +10,7 @@ from bedchain.chains import registry
 from bedchain.chains.between_steps import densities_at, mixing_by_frame
 from bedchain.chains.chain import Chain
 from bedchain.chains.registry import ModelSettings
-from bedchain.errors import UserError
+from bedchain.errors import UserError, make_again
 from bedchain.files import write_arrays
 from bedchain.measures.batch import Batch, batch_of
 from bedchain.measures.mixing import GROUPS, Splits
@@ -56,7 +56,7 @@ def run_chain(
     run, model = open_bed(bed), registry.load(transitions)
     lag, fractions = lag_frames(model.lag_s, run.interval_s), registry.load_fractions(transitions)
     if fractions.lag != lag:
-        raise UserError(f"{transitions} answers at whole steps only: delete it, and it is built again")
+        raise UserError(f"{transitions} answers at whole steps only; {make_again(transitions)}")
     which = comparison.frames(run.times_s)
     length = which.stop - 1 - which.start
     start = run.leading_to(model.grid, which.start, lag)

@@ -5,7 +5,7 @@ import csv
 from pathlib import Path
 from typing import NamedTuple
 
-from bedchain.errors import UserError
+from bedchain.errors import UserError, make_again
 
 
 class Chosen(NamedTuple):
@@ -48,4 +48,4 @@ def read_choice(file: Path | str) -> Chosen:
         lag_s, columns, rows = (float(values[name] or "") for name in Chosen._fields)
         return Chosen(lag_s, int(columns), int(rows))
     except (KeyError, ValueError) as error:
-        raise UserError(f"{file} gives no {', '.join(Chosen._fields)}: delete it and run again") from error
+        raise UserError(f"{file} gives no {', '.join(Chosen._fields)}; {make_again(file)}") from error
