@@ -55,11 +55,13 @@ BED = f"results/{NAME}"
 RUN = {"dem": f"{BED}/dem.json", "bed_series": f"{BED}/bed_series.csv"}
 TRAJECTORY = {"trajectory": f"{BED}/trajectory.npy", "metadata": f"{BED}/trajectory.json"}
 GAS = CASE["gas"]["model"] != "none"  # without it nothing of OpenFOAM is built or run
+FRAMES = "frames" in CASE  # another code's or an experiment's, in place of the simulation
+DEM = [] if FRAMES else RUN["dem"]
 CLAIMS = source_files(f"cases/{NAME}", "claims.csv")  # about both chains of the paper
 MODEL_FIGURES = {"static": "fig3_static", "dynamic": "fig4_dynamic"}
 PLOTS = [
     "fig1_cells",
-    "fig2_cost",
+    *([] if FRAMES else ["fig2_cost"]),
     *(MODEL_FIGURES[model] for model in MODELS if model in MODEL_FIGURES),
     *(["fig_distribution_chosen"] if "chosen" in MODELS else []),
     "fig5a_radial",
@@ -89,7 +91,7 @@ rule all:
                 "stationarity.csv",
                 "timing.csv",
                 "table1.csv",
-                "audit.csv",
+                *(["left_out.csv"] if FRAMES else ["audit.csv"]),
                 "provenance.json",
                 *(["agreement.csv"] if CLAIMS and {*MODEL_FIGURES} <= {*MODELS} else []),
             ],

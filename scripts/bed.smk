@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 # The bed: simulated by LIGGGHTS and OpenFOAM in restartable segments, or out of its archive; its frames.
-from bedchain.workflow import solver_values
+from bedchain.workflow import frame_files, solver_values
 
 DRUM = "liggghts_inputs/drum"
 AUDITED = ["bed", "particles", "contact", "gas", "drum"]
@@ -171,3 +171,33 @@ if REFERENCE:
             "../envs/python.yaml"
         script:
             "unpack_reference.py"
+
+
+# Frames that are there already, of another code or an experiment, in place of run_dem and parse_dumps.
+if FRAMES:
+
+    ruleorder: import_frames > run_dem > parse_dumps
+
+    rule import_frames:
+        input:
+            code("import_frames"),
+            files=lambda wildcards: frame_files(NAME, CASE),  # a function: their names are no patterns
+        output:
+            **TRAJECTORY,
+            particles=f"{BED}/particles.npz",
+            bed_series=RUN["bed_series"],
+            motion=f"{BED}/motion.csv",
+            left_out=f"{RESULTS}/left_out.csv",
+        log:
+            f"{LOGS}/import_frames.log",
+        benchmark:
+            f"{BENCHMARKS}/import_frames.tsv"
+        conda:
+            "../envs/python.yaml"
+        threads: 2
+        params:
+            **pick(CASE, "bed.width_m", "bed.height_m"),
+            section=CASE["frames"],
+            folder=f"cases/{NAME}",
+        script:
+            "import_frames.py"

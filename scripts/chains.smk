@@ -168,7 +168,7 @@ rule time_models:
     input:
         code("time_models"),
         **TRAJECTORY,
-        dem=RUN["dem"],
+        dem=DEM,
         cells=rules.assign_cells.output.cells,
         transitions=expand(rules.build_transitions.output.transitions, model=MODELS),
     output:
@@ -251,7 +251,7 @@ rule write_agreement:
 rule write_provenance:
     input:
         code("write_provenance"),
-        dem=RUN["dem"],
+        dem=TRAJECTORY["metadata"] if FRAMES else RUN["dem"],
         metrics=rules.compare_mixing.output.metrics,
         timing=rules.time_models.output.timing,
     output:

@@ -33,7 +33,7 @@ def plot_stationarity(
     bed_series: Path, bed: BedFiles, stationarity: Path, files: FigureFiles,
     window: Window, splits: Splits, row_m: float, slab: Slab,
 ) -> None:  # fmt: skip
-    """Judge pressure drop (in a drum the inclination), height, shares of both sides and voidage by height.
+    """Judge pressure drop (a drum's inclination), height, shares of both sides and voidage by height.
 
     Parameters
     ----------
@@ -60,9 +60,12 @@ def plot_stationarity(
     edges = np.linspace(0, described["height_m"], rows + 1)
     profile = voidage_profiles(store[frames, 1], edges, described["width_m"], slab)
     interval_s = described["frame_interval_s"]
-    first, unit = ("pressure_drop", "Pa") if "pressure_drop_Pa" in series else ("surface_angle", "rad")
+    of_solvers = [("pressure_drop", "Pa"), ("surface_angle", "rad")]
     seen = {
-        first: (unit, step_s, series[f"{first}_{unit}"].to_numpy()),
+        name: (unit, step_s, series[f"{name}_{unit}"].to_numpy())
+        for name, unit in of_solvers
+        if f"{name}_{unit}" in series
+    } | {
         "particle_height": ("m", step_s, series["mean_height_m"].to_numpy()),
         "share_left": ("1", interval_s, (store[frames, 0] < splits.split_x_m).mean(axis=1)),
         "share_low": ("1", interval_s, (store[frames, 1] < splits.split_z_m).mean(axis=1)),
@@ -83,7 +86,7 @@ def plot_stationarity(
         for at, name in enumerate(seen):
             axes = figure.add_subplot(grid[at // 2, at % 2])
             _draw_series(axes, shown[shown["quantity"] == name], table, name)
-            if at >= 2:
+            if at >= len(seen) - 2:  # nothing is below it
                 axes.set_xlabel("time [s]")
         _draw_profile(figure.add_subplot(grid[:, 2]), profile, middles, table)
         files.save(figure)

@@ -34,15 +34,15 @@ Row = dict[str, Any]
 
 
 def time_models(
-    dem: Path, bed: BedFiles, transitions: list[Path], timing: Path,
+    dem: Path | list[Path], bed: BedFiles, transitions: list[Path], timing: Path,
     learning: Window, comparison: Window, splits: Splits, settings: ModelSettings,
 ) -> None:  # fmt: skip
     """Time counting, estimating, exact propagation and Monte Carlo of each chain, beside the DEM.
 
     Parameters
     ----------
-    dem : Path
-        ``dem.json``.
+    dem : Path or empty list
+        ``dem.json``; empty where the frames are not of a simulation, which is then not timed.
     bed : BedFiles
     transitions : list of Path
         ``transitions_<model>.npz`` of each model.
@@ -54,7 +54,7 @@ def time_models(
         Options by model.
     """
     run = open_bed(bed)
-    rows = [dem_row(read_manifest(dem), *comparison)]
+    rows = [dem_row(read_manifest(dem), *comparison)] if isinstance(dem, Path) else []
     which = comparison.frames(run.times_s)
     of_grid = lru_cache(maxsize=1)(lambda grid: in_memory(run.frames(grid, learning.frames(run.times_s))))
     for path in transitions:

@@ -21,7 +21,8 @@ def write_provenance(
     case : dict
         The case with its defaults, without the looks of its figures.
     dem, metrics, timing : Path
-        Files that the results rest on; their SHA-256 are noted.
+        Files that the results rest on; their SHA-256 are noted. Of imported frames ``trajectory.json``
+        stands in place of dem.json.
     benchmarks : Path
         Folder of Snakemake's benchmark files.
     provenance : Path
@@ -30,7 +31,7 @@ def write_provenance(
     inputs = {"dem": dem, "metrics": metrics, "timing": timing}
     record = {
         "case": {"sha256": case_hash(case), "values": case},
-        "seeds": {"particles": case["seed"], "chain": case["chain"]["seed"]},
+        "seeds": {"particles": case.get("seed"), "chain": case["chain"]["seed"]},
         "git": git_state(),
         "packages": {"debian": debian_packages(), "python": python_packages()},
         "machine": machine(),

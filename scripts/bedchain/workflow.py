@@ -5,7 +5,7 @@ import ast
 import shlex
 import sys
 from collections.abc import Collection, Mapping, Sequence
-from functools import cache
+from functools import cache, partial
 from pathlib import Path
 from typing import Any
 
@@ -20,6 +20,8 @@ from bedchain.command_line.targets import check_options, check_targets
 from bedchain.command_line.words import as_typed, check_words
 from bedchain.errors import UserError, guess, report_user_errors
 from bedchain.trajectory.archive import SIMULATE, check_archive
+from bedchain.trajectory.frames_of_case import measured_sections, settings_of
+from bedchain.trajectory.survey import files_of
 
 TABLE_SECTIONS = (
     "bed",
@@ -116,7 +118,8 @@ def case_or_exit(name: str, preset: str | None = None) -> Case:
             raise UserError(message + guess(name, known))
         if problem := case_name_problem(name, known, read_presets()):
             raise UserError(problem)
-        case = load_case(CASES / name / "case.yaml")
+        measure = partial(measured_sections, cache=Path("results") / name / "frames.json")
+        case = load_case(CASES / name / "case.yaml", measure=measure)
         preset = preset or case.get("preset")
         return with_preset(case, preset_named(preset)) if preset else case
 
@@ -153,6 +156,13 @@ def reference_or_exit(wanted: str | None, name: str, case: Case) -> Path | None:
             raise UserError(f"the case {name} has no archive, {folder}: leave the word out, {SIMULATE}")
         check_archive(folder, case, load_schema())
     return folder
+
+
+def frame_files(name: str, case: Case) -> list[str]:
+    """Files that the frames of a case are in, as inputs of a rule; empty for a simulated bed."""
+    if "frames" not in case:
+        return []
+    return [str(file) for file in files_of(settings_of(case["frames"]).files, CASES / name)]
 
 
 def cell_size(case: Case) -> float:

@@ -7,6 +7,7 @@ from bedchain.case import (  # noqa: F401
     bed_checks,
     cell_checks,
     chain_checks,
+    frame_checks,
     gas_checks,
     scene_checks,
     size_checks,

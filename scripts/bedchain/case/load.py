@@ -3,7 +3,7 @@
 
 import difflib
 import logging
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from functools import cache
 from pathlib import Path
 from typing import Any
@@ -12,17 +12,20 @@ from jsonschema import Draft202012Validator
 from jsonschema.exceptions import ValidationError
 
 from bedchain.case.checks import physical_problems
+from bedchain.case.frame_checks import FRAMES, simulation_problems, with_measured
 from bedchain.case.scene_checks import checked_keys
 from bedchain.case.schema import SCHEMA_FILE, Case, Schema, case_value, load_schema, schema_keys
 from bedchain.case.strict_yaml import Lines, read_yaml
-from bedchain.errors import CaseError, Problem
+from bedchain.errors import CaseError, Problem, UserError
 
 LOG = logging.getLogger(__name__)
 MOST_LETTERS = 60  # of a value in a message
 NEW_NAMES = {"fidelity": "preset"}  # keys of a case and words of --config that were renamed
 
 
-def load_case(file: Path | str, schema_file: Path = SCHEMA_FILE) -> Case:
+def load_case(
+    file: Path | str, schema_file: Path = SCHEMA_FILE, measure: Callable[[Case, Path], Case] | None = None
+) -> Case:
     """A case from its file, with defaults and checked.
 
     Parameters
@@ -31,6 +34,8 @@ def load_case(file: Path | str, schema_file: Path = SCHEMA_FILE) -> Case:
         The case, as ``cases/case.schema.yaml`` describes it.
     schema_file : Path, optional
         The schema.
+    measure : callable, optional
+        Gives the sections that the frames of a case tell of, from the case as written and its folder.
 
     Returns
     -------
@@ -53,6 +58,8 @@ def load_case(file: Path | str, schema_file: Path = SCHEMA_FILE) -> Case:
         )
         raise CaseError(file, [problem])
     data = with_new_names(data, str(file))
+    if FRAMES in data:
+        data, schema = _with_frames(data, schema, lines, file, measure)
     errors = Draft202012Validator(schema).iter_errors(data)
     problems = list(dict.fromkeys(problem for error in errors for problem in _explain(error, schema, lines)))
     broken = {problem.key for problem in problems}
@@ -62,6 +69,23 @@ def load_case(file: Path | str, schema_file: Path = SCHEMA_FILE) -> Case:
     if problems:
         raise CaseError(file, sorted(problems, key=lambda problem: (problem.line or 0, problem.key)))
     return case
+
+
+def _with_frames(
+    data: Case, schema: Schema, lines: Lines, file: Path, measure: Callable[[Case, Path], Case] | None
+) -> tuple[Case, Schema]:
+    """A case of frames with what they tell of, and the schema without what only a simulation needs."""
+    problems = simulation_problems(data, lines)
+    part = {"type": "object", "properties": {FRAMES: schema["properties"][FRAMES]}}
+    for error in Draft202012Validator(part).iter_errors({FRAMES: data[FRAMES]}):
+        problems += _explain(error, schema, lines)
+    if problems:
+        raise CaseError(file, problems)
+    if measure is None:
+        raise UserError(f"{file} is a case of frames: this needs a bed that is simulated")
+    asked = dict(data) | {FRAMES: _with_defaults(data[FRAMES], schema["properties"][FRAMES])}
+    needed = [name for name in schema["required"] if name != "seed"]
+    return with_measured(asked, measure(asked, file.parent)), dict(schema) | {"required": needed}
 
 
 def with_new_names(keys: Mapping[str, Any], place: str) -> dict[str, Any]:

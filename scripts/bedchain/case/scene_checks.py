@@ -8,6 +8,7 @@ from typing import Any
 import numpy as np
 
 from bedchain.case.check_registry import Finding, reads
+from bedchain.case.frame_checks import FRAMES, without_simulation
 from bedchain.physics.packing import START_SPACING_DIAMETERS
 from bedchain.physics.whole_numbers import is_multiple, nearest_multiple
 
@@ -16,13 +17,15 @@ UNUSED_WITHOUT_GAS = {"time": ("gas_step_s", "ramp_s"), "contact": ("largest_ove
 
 
 def used_keys(case: dict[str, Any]) -> dict[str, Any]:
-    """The case less the keys that its scene does not use: in a scene without gas those of the gas.
+    """The case less the keys that its scene does not use: those of the gas, or of frames the solvers'.
 
     Parameters
     ----------
     case : dict
         The case with its defaults; sections that the schema refused may have any type.
     """
+    if FRAMES in case:
+        return without_simulation(case)
     gas = case.get("gas")
     if not isinstance(gas, dict) or gas.get("model") != "none":
         return case
@@ -34,7 +37,14 @@ def used_keys(case: dict[str, Any]) -> dict[str, Any]:
 
 
 def checked_keys(case: dict[str, Any]) -> dict[str, Any]:
-    """`used_keys`, and ``scene``: shape and gas model, such as ``box, coupled`` or ``drum, none``."""
+    """`used_keys`, and ``scene``: shape and gas model, such as ``box, coupled`` or ``drum, none``.
+
+    A case of frames has no scene, and the time of its last frame is ``frames.end_s``.
+    """
+    if FRAMES in case:
+        used = used_keys(case)
+        frames = used[FRAMES] | {"end_s": used["time"].get("end_s")}
+        return used | {FRAMES: frames, "time": {"frame_interval_s": used["time"].get("frame_interval_s")}}
     gas = case.get("gas")
     model = gas.get("model") if isinstance(gas, dict) else None
     return used_keys(case) | {"scene": f"{'drum' if 'drum' in case else 'box'}, {model}"}

@@ -154,7 +154,7 @@ def report_metrics(source: str, report: str) -> list[Metric]:
 
 
 def bed_metrics(series: pd.DataFrame, weight_Pa: float, start_s: float, end_s: float) -> list[Metric]:
-    """Means over a window: pressure drop and height of a bed, or height and inclination of a drum's bed.
+    """Means over a window: pressure drop and height of a bed, height and inclination of a drum's, or height.
 
     Parameters
     ----------
@@ -180,6 +180,8 @@ def bed_metrics(series: pd.DataFrame, weight_Pa: float, start_s: float, end_s: f
     height = mean_metric("particle_height_mean", part["mean_height_m"].to_numpy(), "m")
     if "surface_angle_rad" in series:
         return [height, mean_metric("surface_angle_mean", part["surface_angle_rad"].to_numpy(), "rad")]
+    if "pressure_drop_Pa" not in series:
+        return [height]
     pressure = part["pressure_drop_Pa"].to_numpy()
     return [
         mean_metric("pressure_drop_mean", pressure, "Pa"),

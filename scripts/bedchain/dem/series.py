@@ -8,6 +8,7 @@ import pandas as pd
 from bedchain.errors import UserError
 
 SERIES_COLUMNS = ("time_s", "mean_height_m")
+FRAMES_COLUMNS = (*SERIES_COLUMNS, "particles_1")  # of imported frames
 GAS_COLUMNS = (
     "pressure_drop_Pa",
     "smallest_voidage_1",
@@ -39,7 +40,8 @@ def read_series(path: Path) -> pd.DataFrame:
         table = pd.read_csv(path)
     except (OSError, ValueError) as error:
         raise UserError(f"{path}: not readable ({error}); run run_dem again") from error
-    needed = SERIES_COLUMNS if "surface_angle_rad" in table else (*SERIES_COLUMNS, *GAS_COLUMNS)
+    without_gas = "surface_angle_rad" in table or tuple(table) == FRAMES_COLUMNS
+    needed = SERIES_COLUMNS if without_gas else (*SERIES_COLUMNS, *GAS_COLUMNS)
     missing = [name for name in needed if name not in table]
     if missing:
         raise UserError(f"{path} has no column {', '.join(missing)}; run run_dem again")

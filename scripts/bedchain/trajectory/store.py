@@ -144,7 +144,7 @@ def write_trajectory(
     manifest = read_manifest(dem)
     frames, number = manifest["frames"], int(manifest["number"])
     shape, bounds = (len(frames), len(STORED), number), {"x": width_m, "z": height_m}
-    _check_disk(trajectory, 4 * int(np.prod(shape)))
+    check_disk(trajectory, 4 * int(np.prod(shape)))
     ids: np.ndarray | None = None
     columns = manifest["columns"]
     if absent := [name for name in STORED if name not in columns]:
@@ -252,7 +252,21 @@ def open_trajectory(path: Path, metadata_path: Path) -> tuple[np.ndarray, dict[s
     return store, metadata
 
 
-def _check_disk(target: Path, size: int) -> None:
+def check_disk(target: Path, size: int) -> None:
+    """Refuse to start a file for which there is no room on its disk.
+
+    Parameters
+    ----------
+    target : Path
+    size : int
+        Of the file [bytes].
+
+    Raises
+    ------
+    UserError
+        There is less free.
+    """
+    target.parent.mkdir(parents=True, exist_ok=True)
     needed, free = size + DISK_RESERVE_BYTES, shutil.disk_usage(target.parent).free
     if free < needed:
         needed_size, free_size = (tqdm.format_sizeof(number, "B") for number in (needed, free))

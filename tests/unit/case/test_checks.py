@@ -12,6 +12,7 @@ from bedchain.case.schema import load_schema, schema_keys
 from made import ROOT
 
 NAMES = {
+    "axes_differ", "frames_are_in_metres", "frames_have_no_repeats", "windows_lie_in_the_frames",
     "a_box_has_gas_and_a_drum_has_none", "a_revolution_has_frames", "cells_can_be_counted",
     "colour_maps_exist", "colours_exist", "earlier_velocities_are_in_the_window",
     "jumps_of_the_recurrence_have_targets", "lags_fill_the_comparison", "lags_of_the_discussion_fit",
@@ -39,7 +40,7 @@ def test_every_check_is_registered_by_the_modules_that_need_them(module):
 
 
 def test_checks_read_keys_of_the_schema():
-    known = {*schema_keys(load_schema()), "scene"}
+    known = {*schema_keys(load_schema()), "scene", "frames.end_s"}
     assert len(CHECKS) == len(NAMES)
     assert {key for keys, _ in CHECKS for key in keys} <= known
 

@@ -64,8 +64,11 @@ def bed_variants(case: Case) -> dict[str, BedVariant]:
     Returns
     -------
     dict
-        Most expensive first, so that the last ones end together; without values that the case already has.
+        Most expensive first, so that the last ones end together; without values that the case already has;
+        empty for imported frames, which cannot be simulated.
     """
+    if "frames" in case:
+        return {}
     gas = case["gas"]["model"] != "none"
     variants = {"base": BedVariant(REALISATION, Variant("base"))}
     for axis, name, changes in [*_particles(case), *(_gas(case) if gas else ())]:

@@ -1,0 +1,111 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Somebody else's frames as the trajectory of a case, and what cannot be made of them: left_out.csv."""
+
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pandas as pd
+
+from bedchain.files import write_csv
+from bedchain.stage import LOG, run_stage
+from bedchain.trajectory.frames_of_case import placement_of, settings_of
+from bedchain.trajectory.imported import Targets, write_imported
+from bedchain.trajectory.store import open_trajectory
+from bedchain.trajectory.survey import cached_survey, check_even
+
+CHUNK_FRAMES = 50
+
+
+@dataclass(frozen=True)
+class Tables:
+    """Tables to make.
+
+    Attributes
+    ----------
+    bed_series : Path
+        Mean height of the particles over time.
+    motion : Path
+        Displacements beside velocities, interval by interval.
+    left_out : Path
+        What a simulated bed has and these frames cannot give.
+    """
+
+    bed_series: Path
+    motion: Path
+    left_out: Path
+
+
+def import_frames(
+    section: dict[str, Any], folder: Path, width_m: float, height_m: float, targets: Targets, tables: Tables,
+    progress: bool = True,
+) -> None:  # fmt: skip
+    """Store the frames, check them as physics, and say what is left out.
+
+    Parameters
+    ----------
+    section : dict
+        Section ``frames`` of the case, complete.
+    folder : Path
+        Of the case.
+    width_m, height_m : float
+        Size of the bed [m].
+    targets : Targets
+    tables : Tables
+    progress : bool
+        Show a progress bar on stderr.
+
+    Raises
+    ------
+    UserError
+        Frames are missing, uneven, or cannot be used; no trajectory is written.
+    """
+    settings = settings_of(section)
+    frames = cached_survey(settings, folder, targets.metadata.with_name("frames.json"), whole_box=False)
+    check_even(frames)
+    motion = write_imported(frames, settings, placement_of(section, width_m, height_m), targets, progress)
+    store, about = open_trajectory(targets.trajectory, targets.metadata)
+    write_csv(bed_series(store, np.array(about["times_s"])), tables.bed_series)
+    write_csv(motion.table(), tables.motion)
+    for note in frames.notes:
+        LOG.info("note: %s", note)
+    for warning in motion.warnings():
+        LOG.warning("warning: %s", warning)
+    table = left_out(bool(np.isfinite(store[0, 2:4]).any()))
+    write_csv(table, tables.left_out)
+    LOG.info(
+        "%d frames of %d particles, first at %g s of the files, which is t = 0 here",
+        *store.shape[::2],
+        frames.start_s,
+    )
+    LOG.info("left out, since these are frames and no simulation:\n%s", table.to_string(index=False))
+
+
+def bed_series(store: np.ndarray, times_s: np.ndarray) -> pd.DataFrame:
+    """Mean height and number of the particles in each frame: time_s, mean_height_m, particles_1."""
+    heights, numbers = [], []
+    for first in range(0, len(store), CHUNK_FRAMES):
+        z = np.array(store[first : first + CHUNK_FRAMES, 1], float)
+        heights += np.nanmean(z, axis=1).tolist()
+        numbers += np.isfinite(z).sum(axis=1).tolist()
+    return pd.DataFrame({"time_s": times_s, "mean_height_m": heights, "particles_1": numbers})
+
+
+def left_out(velocities: bool) -> pd.DataFrame:
+    """What is not made of frames, and why: product, reason."""
+    rows = [
+        ("snapshot, pressure drop, voidage of the gas", "no gas in the frames"),
+        ("audit.csv", "stiffness, step and gas of the other code are not known"),
+        ("fig2_cost, the DEM in timing.csv", "no timing of the code that wrote the frames"),
+        ("noise floor of metrics.csv", "no repeats: the frames are there once"),
+    ]
+    if not velocities:
+        rows.append(
+            ("velocities of the frames, motion.csv", "no velocities: differences of positions are taken")
+        )
+    return pd.DataFrame(rows, columns=["product", "reason"])
+
+
+if rule := globals().get("snakemake"):
+    run_stage(import_frames, rule)

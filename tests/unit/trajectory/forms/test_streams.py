@@ -1,0 +1,58 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Lines, pieces and bytes of a stream across its blocks, and files that are compressed, well or badly."""
+
+import gzip
+import io
+import lzma
+
+import pytest
+
+from bedchain.errors import DataError
+from bedchain.trajectory.forms import streams
+from bedchain.trajectory.forms.streams import Source, compression, opened
+
+LINES = [f"line {number}\n".encode() for number in range(50)]
+
+
+@pytest.fixture(params=[1, 7, 64, 10_000])
+def source(request, monkeypatch):
+    monkeypatch.setattr(streams, "BLOCK_BYTES", request.param)
+    return Source(io.BytesIO(b"".join(LINES) + b"end"))
+
+
+def test_lines_and_pieces_come_in_order_whatever_the_block(source):
+    assert [source.line(), source.line()] == LINES[:2]
+    assert source.lines(30) == (b"".join(LINES[2:32]), 30)
+    assert source.lines(0) == (b"", 0)
+    assert source.lines(5, keep=False) == (b"", 5)
+    assert source.exactly(4) == b"line" and source.line() == b" 37\n"
+    piece, count = source.lines(100)
+    assert count == 12 and piece == b"".join(LINES[38:]) + b"end"
+    assert source.at_end() and source.line() is None and source.exactly(3) == b""
+
+
+def test_an_endless_line_is_refused():
+    with pytest.raises(DataError, match="a line is longer than 65536 bytes"):
+        Source(io.BytesIO(b"x" * 9 * 2**20)).line()
+
+
+def test_compressed_files_are_unpacked_and_damage_is_named(tmp_path):
+    for suffix, pack in (("gz", gzip.compress), ("xz", lzma.compress)):
+        file = tmp_path / f"a.{suffix}"
+        file.write_bytes(pack(b"".join(LINES)))
+        assert compression(file.read_bytes()) == suffix
+        with opened(file) as stream:
+            assert Source(stream).lines(50)[0] == b"".join(LINES)
+        file.write_bytes(file.read_bytes()[:-20])
+        with pytest.raises(DataError, match="damaged or cut off"), opened(file) as stream:
+            Source(stream).lines(50)
+
+
+def test_zstd_without_its_package_says_the_way_out(tmp_path, monkeypatch):
+    (tmp_path / "a.zst").write_bytes(b"\x28\xb5\x2f\xfd....")
+    monkeypatch.setitem(__import__("sys").modules, "zstandard", None)
+    with (
+        pytest.raises(DataError, match=r"a.zst is compressed by zstd: unpack it"),
+        opened(tmp_path / "a.zst"),
+    ):
+        pass
