@@ -15,6 +15,7 @@ from snakemake.cli import get_argument_parser
 sys.path.insert(0, f"{workflow.basedir}/scripts")
 
 from bedchain.command_line.failures import failure_report
+from bedchain.lifetime import begin_run, end_all_at_sigterm
 from bedchain.workflow import (
     case_or_exit,
     code,
@@ -32,6 +33,8 @@ quote_interpreter()
 if not workflow.is_main_process:  # a job's own snakemake repeats no hint
     logging.getLogger("bedchain").setLevel(logging.ERROR)
 TYPED = workflow.is_main_process and "snakemake" in Path(sys.argv[0]).parts[-2:]  # sys.argv is a user's line
+if TYPED or workflow.remote_exec:  # its jobs end with it, however it ends
+    begin_run()
 if TYPED:
     options_or_exit(sys.argv[1:], workflow.resource_settings.cores, workflow.resource_settings.nodes)
 
@@ -128,6 +131,13 @@ if TYPED and WORDS.get("studies", True):
         [rule.name for rule in workflow.rules],
         {NAME, FOLDER, *(["paper"] if WITH_PAPER else [])},
     )
+
+
+# kill or the end of a terminal ends all jobs within seconds, as Ctrl-C does.
+if TYPED:
+
+    onstart:
+        end_all_at_sigterm()
 
 
 # The cause of a failure stands in the last lines, below snakemake's own.

@@ -15,6 +15,7 @@ from pathlib import Path
 
 from bedchain.errors import report_user_errors
 from bedchain.files import write_csv, write_text
+from bedchain.lifetime import end_with_run
 from bedchain.studies.peers.plots import draw
 from bedchain.studies.peers.study import all_peers, compare
 from bedchain.studies.peers.table import markdown, ratios, summary
@@ -69,6 +70,7 @@ def main() -> int:
     parser.add_argument("--start", type=float, help="gas before the comparison [s] (default: by the case)")
     parser.add_argument("--solver", type=Path, default=SOLVER, help=f"bedFoam (default {SOLVER})")
     parser.add_argument("--folder", type=Path, default=FOLDER, help=f"for all results (default {FOLDER})")
+    end_with_run()
     with report_user_errors():
         return 0 if compare_peers(parser.parse_args()) else 1
 

@@ -17,6 +17,7 @@ from pathlib import Path
 
 from bedchain.dem.run import repeat_dem, run_dem
 from bedchain.errors import report_user_errors
+from bedchain.lifetime import end_with_run
 
 
 def main() -> None:
@@ -33,6 +34,7 @@ def main() -> None:
     given = parser.parse_args()
     if (given.repeat is None) != (given.start is None):
         parser.error("--repeat and --start belong together")
+    end_with_run()
     with report_user_errors():
         if given.repeat is None:
             run_dem(given.folder, given.end, given.segment, given.ranks)

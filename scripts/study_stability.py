@@ -18,6 +18,7 @@ import pandas as pd
 
 from bedchain.errors import UserError, report_user_errors
 from bedchain.files import write_csv
+from bedchain.lifetime import end_with_run
 from bedchain.studies.stability.bed_settings import bed_settings
 from bedchain.studies.stability.chain_settings import chain_settings
 from bedchain.studies.stability.maps import draw_maps
@@ -73,6 +74,7 @@ def main() -> int:
         "--longest", type=float, default=LONGEST_S, help=f"wall time of a setting [s] (default {LONGEST_S:g})"
     )
     given = parser.parse_args()
+    end_with_run()
     with report_user_errors():
         table = study_stability(given.folder, given.extent, given.only, given.longest)
     for outcome, number in table.groupby("guards")["outcome"].value_counts().items():

@@ -20,7 +20,7 @@ from bedchain.dem.repeats import repeat_folder
 from bedchain.errors import UserError
 from bedchain.files import write_csv
 from bedchain.provenance import machine
-from bedchain.stage import LOG, stage
+from bedchain.stage import LOG, known_files, stage
 from bedchain.studies.marked_starts import Start, starts_in
 from bedchain.studies.records import remove_other_results, stamp
 from bedchain.studies.scan import Task
@@ -138,7 +138,9 @@ def main() -> None:
     parser.add_argument("--at-once", type=int, default=2, metavar="N", help="of them side by side")
     parser.add_argument("--log", type=Path, default=Path("study_tradeoff.log"), help="log file")
     given = parser.parse_args()
-    with stage(given.log):
+    folder = given.folder
+    inputs = [*folder.glob("**/bed_series.csv"), *folder.glob("**/mixing.csv"), *folder.glob("trajectory.*")]
+    with stage(given.log), known_files(inputs, [folder / "tradeoff.csv"]):
         study_tradeoff(given.case, given.folder, given.variants, given.at_once)
 
 

@@ -14,6 +14,7 @@ from pathlib import Path
 import pandas as pd
 
 from bedchain.errors import report_user_errors
+from bedchain.lifetime import end_with_run
 from bedchain.studies.verification.suite import CHECKS, verify
 
 SOLVER = Path("results/bin/bedFoam")
@@ -36,6 +37,7 @@ def main() -> int:
     parser.add_argument("--solver", type=Path, default=SOLVER, help=f"bedFoam (default {SOLVER})")
     parser.add_argument("--folder", type=Path, default=FOLDER, help=f"for all results (default {FOLDER})")
     arguments = parser.parse_args()
+    end_with_run()
     with report_user_errors():
         table = verify(
             arguments.solver, arguments.folder, arguments.only, lambda line: print(line, flush=True)

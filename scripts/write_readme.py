@@ -17,7 +17,7 @@ from PIL import Image
 
 from bedchain.errors import UserError
 from bedchain.files import atomic_file, write_csv, write_text
-from bedchain.stage import LOG, stage
+from bedchain.stage import LOG, known_files, stage
 from bedchain.studies.readme import case_tables, study_tables
 from bedchain.studies.readme.marks import filled
 from bedchain.studies.readme.origins import origin_now, origin_of_case, with_origin
@@ -138,7 +138,8 @@ def main() -> None:
     parser.add_argument("--study", help=f"make its csv file, of {', '.join(OF_STUDY)}")
     parser.add_argument("--log", type=Path, default=Path("write_readme.log"), help="log file")
     given = parser.parse_args()
-    with stage(given.log):
+    results = Path("results") / (given.case or "none")
+    with stage(given.log), known_files(sorted([*results.glob("*.csv"), *results.glob("*.json")]), []):
         write_readme(given.case, given.study)
 
 

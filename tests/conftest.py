@@ -1,7 +1,11 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Properties are tried on the same examples each time, and on few of them: the fast suite stays fast."""
+"""Properties are tried on the same examples each time, and on few of them; a killed ./test ends its tests."""
 
 from hypothesis import HealthCheck, settings
+
+from bedchain.lifetime import end_with_run
+
+end_with_run()
 
 settings.register_profile(
     "bedchain",

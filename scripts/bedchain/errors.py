@@ -2,10 +2,11 @@
 """Errors that a user can put right, reported as one message without a traceback."""
 
 import difflib
+import errno
 import shlex
 import sys
 from collections.abc import Iterable, Iterator
-from contextlib import contextmanager
+from contextlib import contextmanager, suppress
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -79,9 +80,44 @@ def make_again(*files: Path | str) -> str:
     return f"make it again: {shlex.join(['./run', '--force', *map(str, files)])}"
 
 
+# what the world does to a program, and what to do about it
+WORLD = {
+    errno.ENOSPC: ("no space is left on its disk", "free some space"),
+    errno.EDQUOT: ("your share of its disk is full", "free some space"),
+    errno.EFBIG: ("it is larger than this system allows", "raise the limit (ulimit -f)"),
+    errno.EACCES: ("permission is denied", "give yourself the right to it"),
+    errno.EPERM: ("permission is denied", "give yourself the right to it"),
+    errno.EROFS: ("its disk is read-only", "work on another disk"),
+    errno.EISDIR: ("a folder stands in its place", "move that away"),
+    errno.EEXIST: ("something else stands in its place", "move that away"),
+    errno.ENOTDIR: ("a file stands in the place of its folder", "move that away"),
+    errno.ENOENT: ("it is missing", "look whether its folder is there"),
+    errno.EIO: ("the disk cannot be read or written", "look after the disk"),
+    errno.EMFILE: ("too many files are open", "raise the limit (ulimit -n)"),
+    errno.ENAMETOOLONG: ("its name is too long", "take a shorter path"),
+    errno.ENOMEM: ("the memory is full", "end other programs"),
+}
+
+
+def world_error(error: OSError, file: Path | str | None = None) -> UserError | None:
+    """The sentence for an error of the world: which file, what is wrong, what to do; None for any other.
+
+    Parameters
+    ----------
+    error : OSError
+    file : path, optional
+        Where the error itself names none.
+    """
+    if error.errno not in WORLD:
+        return None
+    wrong, remedy = WORLD[error.errno]
+    name = error.filename or file or "a file (its name is not known)"
+    return UserError(f"{name}: {wrong}; {remedy} and give the same command again")
+
+
 @contextmanager
 def report_user_errors(log: Path | str | None = None) -> Iterator[None]:
-    """Turn a `UserError` into its message on stderr and exit code 1, without a traceback.
+    """Turn a `UserError`, or an error of the world, into its message on stderr, without a traceback.
 
     Parameters
     ----------
@@ -91,14 +127,27 @@ def report_user_errors(log: Path | str | None = None) -> Iterator[None]:
     Raises
     ------
     SystemExit
-        Code 1, after a `UserError`; every other exception passes unchanged.
+        Code 1, after one of these; 130, after Ctrl-C. Every other exception passes unchanged.
     """
     try:
         yield
     except UserError as error:
-        message = f"error: {error}"
-        print(message, file=sys.stderr)
-        if log is not None:
-            with Path(log).open("a", encoding="utf-8") as stream:
-                stream.write(message + "\n")
+        _report(error, log)
         raise SystemExit(1) from None
+    except OSError as error:
+        if (sentence := world_error(error)) is None:
+            raise
+        _report(sentence, log)
+        raise SystemExit(1) from None
+    except KeyboardInterrupt:
+        print("ended on request; what is finished stays", file=sys.stderr)
+        raise SystemExit(130) from None
+
+
+def _report(error: UserError, log: Path | str | None) -> None:
+    message = f"error: {error}"
+    with suppress(OSError):  # of a full disk, or a reader that has gone
+        print(message, file=sys.stderr, flush=True)
+    if log is not None:
+        with suppress(OSError), Path(log).open("a", encoding="utf-8") as stream:
+            stream.write(message + "\n")

@@ -2,10 +2,12 @@
 """Files and folders that appear complete or not at all, arrays in them, and a lock on a folder."""
 
 import fcntl
+import glob
 import os
+import time
 import zipfile
 from collections.abc import Iterator
-from contextlib import contextmanager
+from contextlib import contextmanager, suppress
 from pathlib import Path
 from typing import IO, Any
 
@@ -14,7 +16,7 @@ import pandas as pd
 from numpy.lib import format as npy_format
 from numpy.typing import NDArray
 
-from bedchain.errors import DataError, UserError
+from bedchain.errors import DataError, UserError, world_error
 from bedchain.work_folders import OURS, fresh_folder
 
 
@@ -122,6 +124,7 @@ def refuse_special_file(path: Path) -> None:
 
 
 CSV_DIGITS = "%.8g"
+LOCK_PATIENCE_S = 20.0  # more than mpirun takes to end its ranks
 
 
 @contextmanager
@@ -138,14 +141,32 @@ def atomic_file(target: Path) -> Iterator[Path]:
     Path
         Has the suffix of ``target``, from which some writers take the format.
     """
-    target.parent.mkdir(parents=True, exist_ok=True)
     temporary = target.with_name(f".{target.stem}.{os.getpid()}{target.suffix}")
     try:
+        target.parent.mkdir(parents=True, exist_ok=True)
+        _remove_left_over(target)
         yield temporary
         sync(temporary)
         temporary.replace(target)
+    except OSError as error:
+        # a stream that is full names no file, one by its temporary name is the target
+        if error.filename not in (None, str(temporary)):
+            raise
+        error.filename = None
+        if sentence := world_error(error, target):
+            raise sentence from error
+        raise
     finally:
-        temporary.unlink(missing_ok=True)
+        with suppress(OSError):
+            temporary.unlink(missing_ok=True)
+
+
+def _remove_left_over(target: Path) -> None:
+    """Remove the temporary files of processes that were killed while they wrote the same target."""
+    for file in target.parent.glob(f".{glob.escape(target.stem)}.*{glob.escape(target.suffix)}"):
+        process = file.name[len(target.stem) + 2 : len(file.name) - len(target.suffix)]
+        if process.isdecimal() and not _is_alive(process):
+            file.unlink(missing_ok=True)
 
 
 def sync(file: Path) -> None:
@@ -189,7 +210,9 @@ def write_csv(table: pd.DataFrame, target: Path) -> None:
 
 @contextmanager
 def locked_folder(folder: Path) -> Iterator[None]:
-    """Lock a folder for one process; the lock ends with the process, however that ends.
+    """Lock a folder for one process and the solvers that inherit the lock; it ends with the last of them.
+
+    Of a process that was killed the solvers may need seconds to end: the next one waits for that.
 
     Raises
     ------
@@ -198,18 +221,34 @@ def locked_folder(folder: Path) -> Iterator[None]:
     """
     folder.mkdir(parents=True, exist_ok=True)
     with (folder / "lock").open("a+", encoding="utf-8") as lock:
-        try:
-            fcntl.flock(lock, fcntl.LOCK_EX | fcntl.LOCK_NB)
-        except BlockingIOError:
-            lock.seek(0)
-            holder = lock.read().strip()
+        os.set_inheritable(lock.fileno(), True)
+        lock.seek(0)
+        holder = lock.read().strip()
+        if not _locked(lock, 0 if _is_alive(holder) else LOCK_PATIENCE_S):
             raise UserError(
                 f"{folder} is in use by process {holder}: wait for it, or end it with kill {holder}"
-            ) from None
+            )
         lock.truncate(0)
         lock.write(str(os.getpid()))
         lock.flush()
         yield
+
+
+def _locked(lock: IO[str], patience_s: float) -> bool:
+    """Lock a file; False if another process still has it at the end of the patience."""
+    last = time.monotonic() + patience_s
+    while True:
+        try:
+            fcntl.flock(lock, fcntl.LOCK_EX | fcntl.LOCK_NB)
+            return True
+        except BlockingIOError:
+            if time.monotonic() >= last:
+                return False
+            time.sleep(0.1)
+
+
+def _is_alive(process: str) -> bool:
+    return process.isdecimal() and Path("/proc", process).exists()
 
 
 @contextmanager

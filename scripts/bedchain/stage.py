@@ -9,7 +9,9 @@ from dataclasses import is_dataclass
 from pathlib import Path
 from typing import Any
 
-from bedchain.errors import report_user_errors
+from bedchain.errors import UserError, report_user_errors
+from bedchain.lifetime import end_with_run
+from bedchain.marks import check_noted, note_marks, unreadable
 
 LOG = logging.getLogger("bedchain")
 
@@ -28,6 +30,7 @@ def stage(log: Path | str) -> Iterator[None]:
     SystemExit
         Code 1, after a `UserError` or a `DataError`.
     """
+    end_with_run()
     Path(log).parent.mkdir(parents=True, exist_ok=True)
     handlers: list[logging.Handler] = [logging.StreamHandler(), logging.FileHandler(log, mode="w")]
     for handler in handlers:
@@ -68,7 +71,36 @@ def run_stage(function: Callable[..., object], rule: Any) -> None:
             arguments = stage_arguments(function, rule_names(rule))
         except TypeError as error:
             raise TypeError(f"rule {rule.rule}: {error}") from error
-        function(**arguments)
+        with known_files(_all_files(rule.input), _all_files(rule.output)):
+            function(**arguments)
+
+
+@contextmanager
+def known_files(inputs: list[Path], outputs: list[Path]) -> Iterator[None]:
+    """Work on files that are as their makers left them; leaves notes of the files that it makes.
+
+    Parameters
+    ----------
+    inputs, outputs : list of Path
+
+    Raises
+    ------
+    UserError
+        An input is not as its note says; or the work ended with an error of the program, and an input cannot
+        be read.
+    """
+    check_noted(inputs)
+    try:
+        yield
+    except (UserError, OSError):
+        raise
+    except Exception as error:
+        if (damaged := unreadable(inputs)) is None:
+            raise
+        file, wrong = damaged
+        way_out = "move it away and give the same command again"
+        raise UserError(f"{file} cannot be read ({wrong}): {way_out}") from error
+    note_marks(outputs)
 
 
 def rule_names(rule: Any) -> dict[str, Any]:
@@ -77,6 +109,12 @@ def rule_names(rule: Any) -> dict[str, Any]:
     for files in (rule.input, rule.output):
         names |= {name: _paths(value) for name, value in files.items()}
     return names
+
+
+def _all_files(names: Any) -> list[Path]:
+    """All files that have a name in a rule."""
+    lists = (_paths(files) for _, files in names.items())
+    return [file for part in lists for file in (part if isinstance(part, list) else [part])]
 
 
 def _paths(files: Any) -> Path | list[Path]:

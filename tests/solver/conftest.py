@@ -1,14 +1,12 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """The built solver, and beds of a few hundred particles to run it on."""
 
-import subprocess
-import sys
-
 import pytest
 import yaml
 
 from bedchain.dem.parameter_files import write_parameters
 from made import ROOT
+from made.workflow import built_solver
 
 TINY = {
     "title": "tiny bed for the tests",
@@ -34,11 +32,7 @@ TINY = {
 @pytest.fixture(scope="session")
 def solver():
     """Path of bedFoam, built where that is needed."""
-    target = "results/bin/bedFoam"
-    command = [sys.executable, "-m", "snakemake", "--cores", "2", "--quiet", "all", "--", target]
-    done = subprocess.run(command, cwd=ROOT, capture_output=True, text=True, check=False)
-    assert done.returncode == 0, done.stdout + done.stderr
-    return ROOT / target
+    return built_solver()
 
 
 @pytest.fixture

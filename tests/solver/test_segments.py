@@ -93,6 +93,21 @@ def test_other_inputs_get_a_folder_of_their_own(make_bed):
     assert frames_of(folder) != before
 
 
+@pytest.mark.parametrize("name", ["settled/particles.restart", "segment_0001/particles.restart"])
+def test_a_restart_cut_off_is_made_again_with_all_that_follows_the_same(make_bed, name, capfd):
+    folder = make_bed("bed")
+    run_dem(folder, 0.06, 0.02, 1)
+    expected = frames_of(folder)
+    [restart] = folder.glob(f"dem/*/{name}")
+    whole = restart.read_bytes()
+    restart.write_bytes(whole[: len(whole) // 2])
+    kept = {file: file.stat().st_mtime_ns for file in folder.glob("dem/*/segment_000[23]/frame_*")}
+    run_dem(folder, 0.06, 0.02, 1)
+    assert f"{name.split('/')[0]} is made again, it is " in capfd.readouterr().out
+    assert restart.read_bytes() == whole and frames_of(folder) == expected
+    assert all(file.stat().st_mtime_ns == then for file, then in kept.items())
+
+
 def test_one_run_at_a_time(make_bed):
     folder = make_bed("bed")
     process = start(folder, 1)

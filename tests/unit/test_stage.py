@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """What a stage leaves behind when all goes well, and when it does not."""
 
+import json
 from dataclasses import dataclass
 from pathlib import Path
 from types import SimpleNamespace
@@ -173,3 +174,24 @@ def test_bad_input_of_a_stage_ends_it_with_one_line(tmp_path, capsys):
     with pytest.raises(SystemExit):
         run_stage(draw, rule(tmp_path))
     assert capsys.readouterr().err == "error: frame 3 is cut off\n"
+
+
+def test_what_a_stage_makes_is_known_to_the_next(tmp_path):
+    table = tmp_path / "table.csv"
+    run_stage(lambda table: table.write_text("a\n1\n"), rule(tmp_path, output={"table": str(table)}))
+    table.write_text("a\n2\n")
+    with pytest.raises(SystemExit):
+        run_stage(lambda table: None, rule(tmp_path, input={"table": str(table)}))
+    assert "table.csv was changed after it was written" in (tmp_path / "draw.log").read_text()
+    assert not table.exists()
+
+
+def test_an_error_over_an_input_that_cannot_be_read_names_it(tmp_path):
+    (tmp_path / "old.json").write_text('{"times_s": [0.1, 0.')
+    draw = rule(tmp_path, input={"old": f"{tmp_path}/old.json"})
+    with pytest.raises(SystemExit):
+        run_stage(lambda old: json.loads(old.read_text()), draw)
+    assert "old.json cannot be read (" in (tmp_path / "draw.log").read_text()
+    (tmp_path / "old.json").write_text("{}")
+    with pytest.raises(KeyError):  # a defect of the program keeps its traceback
+        run_stage(lambda old: {}["x"], draw)

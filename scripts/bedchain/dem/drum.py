@@ -2,27 +2,26 @@
 """Segments of a drum, simulated by LIGGGHTS alone; frames and records as of a bed with gas."""
 
 import time
+from collections.abc import Mapping
 from pathlib import Path
 
 import numpy as np
 import pandas as pd
 
-from bedchain.dem.processes import run_deck
+from bedchain.dem.processes import longest_silence, run_deck
+from bedchain.dem.restarts import complete
 from bedchain.dem.segments import (
+    DECKS,
     RESTART,
-    Segment,
+    SERIES,
     SegmentedRun,
     frame_columns,
     keep_own_frames,
     read_parameters,
-    write_record,
 )
-from bedchain.errors import UserError
-from bedchain.files import atomic_folder
 from bedchain.trajectory.dumps import read_dump
 
 FILL, TUMBLE, WALLS = "drum/in.fill", "drum/in.tumble", "drum/walls.in"
-SERIES = "bed_series.csv"
 SERIES_COLUMNS = ["time_s", "mean_height_m", "surface_angle_rad", "kinetic_energy_J", "particles_1"]
 
 
@@ -37,49 +36,48 @@ def input_files(case: Path, decks: Path) -> list[Path]:
     return [case / "parameters.lig", *(decks / name for name in (FILL, TUMBLE, WALLS)), *blocks]
 
 
-def run_segment(
-    run: SegmentedRun, index: int, steps: tuple[int, int], previous: Path, decks: Path
-) -> Segment:
+def simulate(
+    run: SegmentedRun,
+    part: Path,
+    steps: tuple[int, int],
+    previous: Path,
+    parameters: Mapping[str, float | str],
+) -> tuple[float, float, float, float]:
     """Simulate one segment of a drum.
 
     Parameters
     ----------
     run : SegmentedRun
-    index : int
-        Of the segment, from 1.
+    part : Path
+        Folder that gets its files, with ``bed_series.csv``.
     steps : (int, int)
         First and last step of the particles.
     previous : Path
         Folder with the restart to continue.
-    decks : Path
-        ``liggghts_inputs``.
+    parameters : mapping
+        Of `bedchain.dem.segments.read_parameters`.
 
     Returns
     -------
-    Segment
-        Record of the segment; its folder is complete, with ``bed_series.csv``.
+    tuple of float
+        Wall time, and its shares in particles, exchange and gas [s].
 
     Raises
     ------
     UserError
-        LIGGGHTS is missing or stops: its last lines, and the last good state.
+        LIGGGHTS is missing or stops: its last lines.
     """
-    parameters = read_parameters(run.case / "parameters.lig")
-    name, began = f"segment_{index:04d}", time.monotonic()
+    began = time.monotonic()
     variables = {
-        "decks": decks, "parameters": run.case / "parameters.lig", "restart": previous / RESTART,
-        "start_step": steps[0], "steps": steps[1] - steps[0],
+        "decks": DECKS, "parameters": run.case / "parameters.lig", "restart": previous / RESTART,
+        "start_step": steps[0], "steps": steps[1] - steps[0], "output": part,
     }  # fmt: skip
-    with atomic_folder(run.state / name) as part:
-        try:
-            run_deck(decks / TUMBLE, variables | {"output": part}, part / "liggghts.log", run.ranks)
-        except UserError as error:
-            raise UserError(f"{error}\nlast good state: {previous / RESTART}") from None
-        keep_own_frames(part, run, steps, int(parameters["frame_steps"]), str(parameters["dump_suffix"]))
-        drum_series(part, parameters).to_csv(part / SERIES, index=False, float_format="%.10g")
-        wall = time.monotonic() - began
-        segment = Segment(index, *steps, name, wall, wall, 0.0, 0.0)
-        write_record(part, segment)
+    silence_s = longest_silence(float(parameters["frame_steps"]) * float(parameters["number"]))
+    run_deck(DECKS / TUMBLE, variables, part / "liggghts.log", run.ranks, silence_s)
+    with complete(part):
+        keep_own_frames(part, run, steps, parameters)
+    drum_series(part, parameters).to_csv(part / SERIES, index=False, float_format="%.10g")
+    wall = time.monotonic() - began
     step_s = float(parameters["dem_step"])
     cost = wall / (step_s * (steps[1] - steps[0]))
     print(
@@ -87,10 +85,10 @@ def run_segment(
         f"{cost:.1f} s per simulated second, {cost * (run.end_step - steps[1]) * step_s:.0f} s left",
         flush=True,
     )
-    return segment
+    return wall, wall, 0.0, 0.0
 
 
-def drum_series(folder: Path, parameters: dict[str, float | str]) -> pd.DataFrame:
+def drum_series(folder: Path, parameters: Mapping[str, float | str]) -> pd.DataFrame:
     """Integral quantities of the bed in each frame of a segment.
 
     Parameters
@@ -117,6 +115,6 @@ def drum_series(folder: Path, parameters: dict[str, float | str]) -> pd.DataFram
     return pd.DataFrame(sorted(rows), columns=SERIES_COLUMNS)
 
 
-def particle_mass(parameters: dict[str, float | str]) -> float:
+def particle_mass(parameters: Mapping[str, float | str]) -> float:
     """Mass of a particle [kg]."""
     return float(parameters["density"]) * np.pi / 6 * float(parameters["diameter"]) ** 3

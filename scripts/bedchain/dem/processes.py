@@ -1,20 +1,29 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """LIGGGHTS, bedFoam and OpenFOAM's tools as child processes that end with this process."""
 
-import ctypes
 import os
 import re
 import shutil
-import signal
 import subprocess
 import sys
+import threading
 import time
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Iterator, Mapping
+from contextlib import contextmanager
 from pathlib import Path
 
 from bedchain.errors import UserError
+from bedchain.lifetime import child_ends_with_parent
 
-PR_SET_PDEATHSIG = 1  # of linux/prctl.h: signal to a child when its parent dies
+# mpirun's ranks are its children, not ours: each gets SIGKILL as soon as mpirun has ended, however it ended
+RANK_ENDS_WITH_MPIRUN = ("setpriv", "--pdeathsig", "KILL")
+# A solver that writes no line for so long makes no progress. Its start and its longest step without a line
+# take seconds; ten minutes leave room for a machine that swaps or a disk that hangs.
+SILENCE_S = 600.0
+# Particles times steps in a second, on one core and at the least: 5 million were measured, a machine that is
+# shared by 25 has this.
+SLOWEST_PACE = 2e5
+GRACE_S = 8.0  # between SIGTERM and SIGKILL to a child; mpirun itself gives its ranks 5 s
 LINES_SHOWN = 12  # of a solver's log in an error message
 ERROR_LINE = re.compile(r"ERROR|FATAL|error:|No space left|rror while loading")
 
@@ -36,10 +45,23 @@ def solver_environment() -> dict[str, str]:
 
 def on_ranks(command: list[str], ranks: int) -> list[str]:
     """The command line that runs a command on MPI ranks."""
-    return command if ranks == 1 else ["mpirun", "-np", str(ranks), *command]
+    return command if ranks == 1 else ["mpirun", "-np", str(ranks), *RANK_ENDS_WITH_MPIRUN, *command]
 
 
-def run_deck(deck: Path, variables: Mapping[str, object], log: Path, ranks: int = 1) -> None:
+def longest_silence(particle_steps: float) -> float:
+    """Time without a line of output after which a solver is taken to be stuck [s].
+
+    Parameters
+    ----------
+    particle_steps : float
+        Particles times the steps between two lines that it writes.
+    """
+    return max(SILENCE_S, particle_steps / SLOWEST_PACE)
+
+
+def run_deck(
+    deck: Path, variables: Mapping[str, object], log: Path, ranks: int = 1, silence_s: float | None = None
+) -> None:
     """Run a LIGGGHTS deck to its end.
 
     Parameters
@@ -52,6 +74,8 @@ def run_deck(deck: Path, variables: Mapping[str, object], log: Path, ranks: int 
         Gets the output, appended.
     ranks : int
         MPI ranks.
+    silence_s : float, optional
+        Of `run_logged`.
 
     Raises
     ------
@@ -59,11 +83,8 @@ def run_deck(deck: Path, variables: Mapping[str, object], log: Path, ranks: int 
         As `run_logged`.
     """
     options = [word for name, value in variables.items() for word in ("-var", name, str(value))]
-    run_logged(on_ranks(["liggghts", "-in", str(deck), "-log", "none", *options], ranks), log)
-
-
-def _end_with_parent() -> None:
-    ctypes.CDLL(None).prctl(PR_SET_PDEATHSIG, signal.SIGTERM)
+    command = on_ranks(["liggghts", "-in", str(deck), "-log", "none", *options], ranks)
+    run_logged(command, log, silence_s=silence_s)
 
 
 def run_logged(
@@ -71,6 +92,7 @@ def run_logged(
     log: Path,
     each_line: Callable[[str], None] | None = None,
     variables: Mapping[str, str] | None = None,
+    silence_s: float | None = None,
 ) -> None:
     """Run a command to its end, with its output in a log.
 
@@ -84,42 +106,110 @@ def run_logged(
         Called with each line of the output.
     variables : mapping of str to str, optional
         Environment variables of the program besides those of `solver_environment`.
+    silence_s : float, optional
+        Time without a line after which it is ended; None waits for ever [s].
 
     Raises
     ------
     UserError
-        The program is not installed, or ends with an error: its error lines, and the log.
+        The program is not installed, ends with an error, or is stuck: its error or last lines, and the log.
     """
     if shutil.which(command[0]) is None:
         raise UserError(
             f"the program {command[0]} is not installed: run ./run, which installs what is missing"
         )
-    with log.open("a", encoding="utf-8") as stream:
-        child = subprocess.Popen(
-            command,
-            stdin=subprocess.DEVNULL,
-            stdout=subprocess.PIPE,
-            stderr=subprocess.STDOUT,
-            text=True,
-            errors="replace",
-            env=solver_environment() | dict(variables or {}),
-            preexec_fn=_end_with_parent,
-        )
-        try:
-            assert child.stdout is not None
-            for line in child.stdout:
-                stream.write(line)
-                if each_line:
-                    each_line(line)
-            code = child.wait()
-        except BaseException:
-            child.terminate()
-            child.wait()
-            raise
-    if code != 0:
+    name = Path(command[0]).name
+    with log.open("a", encoding="utf-8") as stream, _child(command, variables) as child:
+        watchdog = Watchdog(child, silence_s)
+        assert child.stdout is not None
+        for line in child.stdout:
+            watchdog.heard()
+            stream.write(line)
+            if each_line:
+                each_line(line)
+        code = child.wait()
+        watchdog.rest()
+    if watchdog.barked:
         raise UserError(
-            f"{Path(command[0]).name} ended with code {code}:\n{error_lines(log)}\nits whole log: {log}"
+            f"{name} was ended: no line of output for {silence_s:g} s, so no progress; its last lines:\n"
+            f"{last_lines(log)}\nits whole log: {log}"
         )
+    if code != 0:
+        raise UserError(f"{name} ended with code {code}:\n{error_lines(log)}\nits whole log: {log}")
+
+
+@contextmanager
+def _child(command: list[str], variables: Mapping[str, str] | None) -> Iterator[subprocess.Popen[str]]:
+    """A child process that ends with the body, or with this process."""
+    child = subprocess.Popen(
+        command,
+        stdin=subprocess.DEVNULL,
+        stdout=subprocess.PIPE,
+        stderr=subprocess.STDOUT,
+        text=True,
+        errors="replace",
+        env=solver_environment() | dict(variables or {}),
+        preexec_fn=child_ends_with_parent(),
+        close_fds=False,  # a folder's lock is inherited: it holds until the last process in there has ended
+    )
+    try:
+        yield child
+    except BaseException:
+        end(child)
+        raise
+
+
+def end(child: subprocess.Popen[str]) -> None:
+    """End a child: by SIGTERM, and by SIGKILL if that is not enough."""
+    child.terminate()
+    try:
+        child.wait(GRACE_S)
+    except subprocess.TimeoutExpired:
+        child.kill()
+        child.wait()
+
+
+class Watchdog:
+    """Ends a child that has been silent for too long; time in which this process is stopped does not count.
+
+    Parameters
+    ----------
+    child : Popen
+    silence_s : float or None
+        Longest time without a line [s]; None watches nothing.
+    """
+
+    TICKS = 50  # of a silence; a stop of this process (Ctrl-Z, a sleeping laptop) costs one
+
+    def __init__(self, child: subprocess.Popen[str], silence_s: float | None) -> None:
+        self.child = child
+        self.barked = False
+        self._quiet_ticks = 0
+        self._over = threading.Event()
+        if silence_s is not None:
+            threading.Thread(target=self._watch, args=(silence_s / self.TICKS,), daemon=True).start()
+
+    def heard(self) -> None:
+        """Take note of a line."""
+        self._quiet_ticks = 0
+
+    def rest(self) -> None:
+        """End the watch."""
+        self._over.set()
+
+    def _watch(self, tick_s: float) -> None:
+        while not self._over.wait(tick_s):
+            self._quiet_ticks += 1
+            if self._quiet_ticks >= self.TICKS:
+                self.barked = True
+                end(self.child)
+                return
+
+
+def last_lines(log: Path) -> str:
+    """The last lines of a log that are not empty, indented."""
+    lines = [line for line in log.read_text(encoding="utf-8", errors="replace").splitlines() if line.strip()]
+    return "\n".join("  " + line for line in lines[-3:])
 
 
 def error_lines(log: Path) -> str:

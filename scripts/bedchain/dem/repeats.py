@@ -5,10 +5,9 @@ from pathlib import Path
 from typing import Any
 
 from bedchain.dem.gas_case import copy_last_state, redistribute
-from bedchain.dem.processes import run_deck
+from bedchain.dem.processes import SILENCE_S, run_deck
 from bedchain.dem.segments import RESTART, SegmentedRun
 from bedchain.errors import UserError
-from bedchain.files import atomic_folder
 from bedchain.physics.whole_numbers import is_prime
 
 DECK = "in.perturb"
@@ -73,7 +72,9 @@ def segment_that_ends(manifest: dict[str, Any], time_s: float) -> Path:
     return ends[nearest]
 
 
-def perturb(run: SegmentedRun, segment: Path, decks: Path, seed: int, speed_m_s: float = KICK_M_S) -> None:
+def perturb(
+    run: SegmentedRun, segment: Path, target: Path, decks: Path, seed: int, speed_m_s: float = KICK_M_S
+) -> None:
     """Write a perturbed copy of a segment's last state, of particles and gas, as the origin of a repeat.
 
     The segment may come from a run on another number of ranks.
@@ -81,9 +82,11 @@ def perturb(run: SegmentedRun, segment: Path, decks: Path, seed: int, speed_m_s:
     Parameters
     ----------
     run : SegmentedRun
-        Its ``state`` gets the folder ``origin``, unless it exists.
+        The repeat.
     segment : Path
         Folder with ``particles.restart`` and ``gas``.
+    target : Path
+        Folder that gets the same.
     decks : Path
         Folder of ``in.perturb``.
     seed : int
@@ -91,17 +94,14 @@ def perturb(run: SegmentedRun, segment: Path, decks: Path, seed: int, speed_m_s:
     speed_m_s : float
         Largest change of a velocity along x and along z, uniformly distributed [m/s].
     """
-    if (run.state / run.origin).exists():
-        return
-    with atomic_folder(run.state / run.origin) as part:
-        copy_last_state(segment / "gas", part / "gas")
-        redistribute(part / "gas", segment / "gas", run.ranks)
-        variables = {
-            "decks": decks,
-            "parameters": run.case / "parameters.lig",
-            "restart": segment / RESTART,
-            "output": part,
-            "kick_seed": seed,
-            "kick_speed": speed_m_s,
-        }
-        run_deck(decks / DECK, variables, part / "liggghts.log", run.ranks)
+    copy_last_state(segment / "gas", target / "gas")
+    redistribute(target / "gas", segment / "gas", run.ranks)
+    variables = {
+        "decks": decks,
+        "parameters": run.case / "parameters.lig",
+        "restart": segment / RESTART,
+        "output": target,
+        "kick_seed": seed,
+        "kick_speed": speed_m_s,
+    }
+    run_deck(decks / DECK, variables, target / "liggghts.log", run.ranks, SILENCE_S)

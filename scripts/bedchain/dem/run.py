@@ -5,14 +5,15 @@ A repeat is another realisation: it starts from a state of the finished run, eac
 """
 
 import json
+from collections.abc import Callable
+from itertools import count
 from pathlib import Path
 
 import pandas as pd
 
 from bedchain.dem import drum
 from bedchain.dem.disk import require_disk
-from bedchain.dem.gas_case import GAS_CASE, GAS_PARTS, prepare_gas
-from bedchain.dem.processes import Progress, on_ranks, run_deck, run_logged
+from bedchain.dem.gas_case import GAS_CASE, GAS_PARTS
 from bedchain.dem.repeats import (
     DECK,
     KICK_M_S,
@@ -22,26 +23,27 @@ from bedchain.dem.repeats import (
     repeat_folder,
     segment_that_ends,
 )
+from bedchain.dem.restarts import check_restart, complete
+from bedchain.dem.segment_run import SOLVER, origin_record, run_segment, settle
 from bedchain.dem.segments import (
+    DECKS,
     RESTART,
+    SERIES,
     SETTLED,
     Segment,
     SegmentedRun,
-    finished_segments,
+    finished,
     frame_columns,
     input_stamp,
-    keep_own_frames,
     manifest,
     read_parameters,
     write_record,
 )
-from bedchain.errors import UserError
+from bedchain.errors import DataError, UserError
 from bedchain.files import atomic_file, atomic_folder, locked_folder, write_text
-from bedchain.trajectory.store import read_manifest
+from bedchain.marks import note_marks
+from bedchain.trajectory.store import read_manifest, retract
 
-SOLVER = Path("results/bin/bedFoam")
-DECKS = Path("liggghts_inputs")
-ROW_EVERY = 10  # gas steps between two rows of bed_series.csv
 BYTES_PER_PARTICLE = 500  # of LIGGGHTS's restart, with its contact history (480 measured)
 
 
@@ -64,82 +66,6 @@ def input_files(folder: Path) -> list[Path]:
             f"{', '.join(missing)} missing: run snakemake, or scripts/write_parameters.py and build.sh"
         )
     return given + decks + gas
-
-
-def settle(run: SegmentedRun) -> None:
-    """Drop the particles and let them come to rest; leaves ``settled/`` with their restart.
-
-    Parameters
-    ----------
-    run : SegmentedRun
-        A state that is settled stays as it is.
-
-    Raises
-    ------
-    UserError
-        LIGGGHTS is not there or stops.
-    """
-    if (run.state / run.origin).exists():
-        return
-    print("run_dem: settling the particles without gas", flush=True)
-    name = drum.FILL if drum.is_drum(run.case) else "in.settle"
-    with atomic_folder(run.state / run.origin) as part:
-        variables = {"decks": DECKS, "parameters": run.case / "parameters.lig", "output": part}
-        run_deck(DECKS / name, variables, part / "liggghts.log", run.ranks)
-
-
-def run_segment(run: SegmentedRun, index: int, steps: tuple[int, int]) -> Segment:
-    """Advance bed and gas over one segment.
-
-    Parameters
-    ----------
-    run : SegmentedRun
-    index : int
-        Of the segment, from 1.
-    steps : (int, int)
-        First and last step of the particles.
-
-    Returns
-    -------
-    Segment
-        Its record, already in its folder.
-
-    Raises
-    ------
-    UserError
-        The solver is not there or stops: its own words, and the last good state.
-    """
-    parameters = read_parameters(run.case / "parameters.lig")
-    step_s = float(parameters["dem_step"])
-    name = f"segment_{index:04d}"
-    previous = run.state / (f"segment_{index - 1:04d}" if index > 1 else run.origin)
-    if drum.is_drum(run.case):
-        return drum.run_segment(run, index, steps, previous, DECKS)
-    with atomic_folder(run.state / name) as part:
-        settings: dict[str, object] = {
-            "ranks": run.ranks,
-            "start_time": round(steps[0] * step_s, 9),
-            "end_time": round(steps[1] * step_s, 9),
-            "start_step": steps[0],
-            "row_every": ROW_EVERY,
-            "deck": f"{DECKS}/in.fluidize",
-            "decks": str(DECKS),
-            "parameters": str(run.case / "parameters.lig"),
-            "restart": str(previous / RESTART),
-            "output": str(part),
-        }
-        prepare_gas(part / "gas", run.case / "caseParameters", previous, settings)
-        progress = Progress(run.end_step * step_s)
-        command = [str(SOLVER), "-case", str(part / "gas")] + (["-parallel"] if run.ranks > 1 else [])
-        try:
-            run_logged(on_ranks(command, run.ranks), part / "bedFoam.log", progress)
-        except UserError as error:
-            raise UserError(f"{error}\nlast good state: {previous / RESTART}") from None
-        keep_own_frames(part, run, steps, int(parameters["frame_steps"]), str(parameters["dump_suffix"]))
-        spent = progress.totals
-        segment = Segment(index, *steps, name, spent["wall"], spent["dem"], spent["exchange"], spent["gas"])
-        write_record(part, segment)
-    return segment
 
 
 def whole_steps(folder: Path, times: dict[str, float]) -> list[int]:
@@ -192,8 +118,7 @@ def run_dem(folder: Path, end_s: float, segment_s: float, ranks: int) -> None:
     end, length = whole_steps(folder, {"--end": end_s, "--segment": segment_s})
     run = SegmentedRun(folder, folder, input_stamp(input_files(folder), ranks), ranks, 0, end, SETTLED)
     with locked_folder(folder / "dem"):
-        settle(run)
-        advance(run, length)
+        advance(run, length, lambda: settle(run))
 
 
 def repeat_dem(
@@ -227,36 +152,97 @@ def repeat_dem(
     if end <= start:
         raise UserError(f"--end, {end_s:g} s, must be after --start, {start_s:g} s")
     segment = folder / segment_that_ends(main, start_s)
+    try:
+        finished(segment)
+    except DataError as error:
+        raise UserError(f"{error}\n{retract(folder / 'dem.json', segment)}") from error
     results = repeat_folder(folder, number)
     stamp = input_stamp(
         [*input_files(folder), DECKS / DECK, segment / RESTART], ranks, f"{number} {kick_m_s}"
     )
     run = SegmentedRun(folder, results, stamp, ranks, start, end, PERTURBED)
+    seed = kick_seed(int(read_parameters(folder / "parameters.lig")["seed"]), number)
+
+    def begin() -> None:
+        with atomic_folder(run.state / run.origin) as part:
+            perturb(run, segment, part, DECKS, seed, kick_m_s)
+            with complete(part):
+                check_restart(part / RESTART, main["number"])
+            write_record(part, origin_record(run))
+
     with locked_folder(results / "dem"):
-        seed = kick_seed(int(read_parameters(folder / "parameters.lig")["seed"]), number)
-        perturb(run, segment, DECKS, seed, kick_m_s)
-        advance(run, length)
+        advance(run, length, begin)
 
 
-def advance(run: SegmentedRun, segment_steps: int) -> None:
-    """Add segments until the run has reached its end, then write what it left behind."""
+def advance(run: SegmentedRun, segment_steps: int, begin: Callable[[], None]) -> None:
+    """Add segments until the run has reached its end, then write what it left behind.
+
+    Each finished segment is compared with its record first. One that is damaged is named and made again
+    from the one before it; those after it stay if they follow from what is made.
+
+    Parameters
+    ----------
+    run : SegmentedRun
+    segment_steps : int
+        Length of a segment.
+    begin : callable
+        Makes the folder that the first segment goes on from.
+    """
+    say_lost(run)
+    if _usable(run.state / run.origin, run.start_step) is None:
+        begin()
+    before = finished(run.state / run.origin)
+    assert before is not None
+    segments: list[Segment] = []
+    while before.end_step < run.end_step:
+        index, start = len(segments) + 1, before.end_step
+        segment = _usable(run.state / f"segment_{index:04d}", start, before.state)
+        if segment is None:
+            stop = min(start + segment_steps, run.end_step)
+            _require_disk(run, stop - start)
+            segment = run_segment(run, index, (start, stop), before.state)
+        segments.append(segment)
+        before = segment
+    write_results(run, segments)
+
+
+def _usable(folder: Path, start_step: int, follows: str = "") -> Segment | None:
+    """What `segments.finished` finds in a folder; a damaged one is named and put aside."""
+    try:
+        return finished(folder, start_step, follows)
+    except DataError as error:
+        aside = (folder.with_name(f"{folder.name}.damaged_{number}") for number in count(1))
+        target = next(name for name in aside if not name.exists())
+        folder.replace(target)
+        print(f"run_dem: {folder.name} is made again, it is {target.name} now: {error}", flush=True)
+        return None
+
+
+def say_lost(run: SegmentedRun) -> None:
+    """Say what of the last try is lost: the folder that it was ended in."""
+    for part in run.state.glob("*.part"):
+        frames = len(list(part.glob("frame_*")))
+        print(
+            f"run_dem: the last try was ended within {part.stem}, of which {frames} frames are lost; "
+            "it is made again",
+            flush=True,
+        )
+
+
+def _require_disk(run: SegmentedRun, steps: int) -> None:
     parameters = read_parameters(run.case / "parameters.lig")
-    segments = finished_segments(run.state)
-    while (start := segments[-1].end_step if segments else run.start_step) < run.end_step:
-        stop = min(start + segment_steps, run.end_step)
-        frame_bytes = 8 * len(frame_columns(parameters)) * (stop - start) // int(parameters["frame_steps"])
-        require_disk(run.results, int(parameters["number"]) * (BYTES_PER_PARTICLE + frame_bytes))
-        segments.append(run_segment(run, len(segments) + 1, (start, stop)))
-    write_results(run, [segment for segment in segments if segment.start_step < run.end_step])
+    frame_bytes = 8 * len(frame_columns(parameters)) * steps // int(parameters["frame_steps"])
+    require_disk(run.results, int(parameters["number"]) * (BYTES_PER_PARTICLE + frame_bytes))
 
 
 def write_results(run: SegmentedRun, segments: list[Segment]) -> None:
-    """Write ``bed_series.csv`` and ``dem.json`` of the finished segments, moved into place when complete."""
+    """Write ``bed_series.csv`` and, last, ``dem.json`` of the finished segments, each whole or not at all."""
     content = manifest(run, segments)
     inside = "" if drum.is_drum(run.case) else "gas"
-    files = [run.state / segment.folder / inside / drum.SERIES for segment in segments]
+    files = [run.state / segment.folder / inside / SERIES for segment in segments]
     series = pd.concat(map(pd.read_csv, files))
     end_s = run.end_step * float(str(content["dem_step_s"])) * (1 + 1e-9)
-    with atomic_file(run.results / "bed_series.csv") as temporary:
+    with atomic_file(run.results / SERIES) as temporary:
         series[series["time_s"] <= end_s].to_csv(temporary, index=False)
     write_text(run.results / "dem.json", json.dumps(content, indent=1))
+    note_marks([run.results / SERIES, run.results / "dem.json"])

@@ -2,23 +2,32 @@
 """Segments of a DEM run: each ends in a restart of both solvers, and exists complete or not at all.
 
 A segment is written into a folder ``<name>.part`` and renamed when it is complete, so that a killed run
-continues after its last finished segment. The start of a segment computes one force anew, and a fluidized bed
-is chaotic: ``segment_s`` and the number of ranks pick another realisation of the same bed, without bias.
+continues after its last finished segment. Its record, written last, holds size and hash of each of its files,
+and of the state that it went on from: a segment whose files are others is made again.
+
+The start of a segment computes one force anew, and a fluidized bed is chaotic: ``segment_s`` and the number
+of ranks pick another realisation of the same bed, without bias.
 """
 
 import hashlib
 import json
 import re
-from dataclasses import asdict, dataclass
+from collections.abc import Mapping
+from dataclasses import asdict, dataclass, field, replace
 from pathlib import Path
+from typing import Any
 
-from bedchain.errors import UserError
-from bedchain.files import path_inside
+from bedchain.errors import DataError, UserError
+from bedchain.files import path_inside, write_text
+from bedchain.marks import check_mark, mark_of
+from bedchain.trajectory.dumps import read_dump
+from bedchain.trajectory.store import RECORD
 
 STAMP_DIGITS = 12  # of sha256: two sets of inputs never share a folder
+DECKS = Path("liggghts_inputs")
 SETTLED = "settled"
 RESTART = "particles.restart"
-RECORD = "segment.json"
+SERIES = "bed_series.csv"
 COLUMNS = {0: ["id", "x", "z", "vx", "vz"], 1: ["id", "x", "y", "z", "vx", "vy", "vz"]}  # by depth_walls
 
 
@@ -70,6 +79,10 @@ class Segment:
         Name of its folder.
     wall_s, dem_s, exchange_s, gas_s : float
         Wall time of the solver's loop, and its shares in particles, exchange and gas [s].
+    follows : str
+        Hash of the state that it went on from; empty in a record of an earlier version.
+    files : dict of str to dict
+        `bedchain.files.mark_of` each file by its path in the folder; empty in a record of an earlier version.
     """
 
     index: int
@@ -80,6 +93,15 @@ class Segment:
     dem_s: float
     exchange_s: float
     gas_s: float
+    follows: str = ""
+    files: dict[str, dict[str, Any]] = field(default_factory=dict)
+
+    @property
+    def state(self) -> str:
+        """Hash of the state that it ends in: restart and gas, neither frames nor series."""
+        others = ("frame_", SERIES, f"gas/{SERIES}")
+        marks = {name: mark for name, mark in self.files.items() if not name.startswith(others)}
+        return hashlib.sha256(json.dumps(marks, sort_keys=True).encode()).hexdigest() if marks else ""
 
 
 def input_stamp(files: list[Path], ranks: int, numbers: str = "") -> str:
@@ -116,36 +138,82 @@ def read_parameters(file: Path) -> dict[str, float | str]:
     return {name: float(value) if style == "equal" else value for name, style, value in variables}
 
 
-def frame_columns(parameters: dict[str, float | str]) -> list[str]:
+def frame_columns(parameters: Mapping[str, float | str]) -> list[str]:
     """Columns of the frames that ``in.fluidize`` writes, by the parameters of `read_parameters`."""
     return COLUMNS[int(parameters["depth_walls"])]
 
 
-def finished_segments(folder: Path) -> list[Segment]:
-    """Finished segments of a run, in order, up to the first missing one.
+def finished(folder: Path, start_step: int | None = None, follows: str = "") -> Segment | None:
+    """The finished segment, or the settled state, in a folder; None where the folder is not there.
+
+    Sizes are compared of all its files, hashes of all but the frames: those are compared when they are read.
+
+    Parameters
+    ----------
+    folder : Path
+    start_step : int, optional
+        Step that it must begin at.
+    follows : str, optional
+        Hash of the state that it must have gone on from; empty where that is not known.
 
     Raises
     ------
     DataError
-        A record names a folder outside the run's.
+        It is not what its maker left: names the file and what is wrong.
     """
-    segments: list[Segment] = []
-    while True:
-        record = folder / f"segment_{len(segments) + 1:04d}" / RECORD
-        if not record.exists():
-            return segments
+    if not folder.exists():
+        return None
+    segment = _read_record(folder)
+    if start_step is not None and segment.start_step != start_step:
+        raise DataError(f"{folder} begins at step {segment.start_step}, not where the one before it ends")
+    if follows and segment.follows and segment.follows != follows:
+        raise DataError(f"{folder} did not go on from the state before it")
+    for name, mark in segment.files.items():
+        check_mark(path_inside(folder, name), mark, with_hash=not name.startswith("frame_"))
+    return segment if segment.files else replace(segment, files=marks_in(folder))
+
+
+def _read_record(folder: Path) -> Segment:
+    record = folder / RECORD
+    if not record.exists():
+        raise DataError(f"{folder} has no record {RECORD}: it was left before it was complete")
+    try:
         segment = Segment(**json.loads(record.read_text(encoding="utf-8")))
-        path_inside(folder, segment.folder)
-        segments.append(segment)
+        numbers = (segment.index, segment.start_step, segment.end_step)
+        whole = segment.folder == folder.name and all(isinstance(number, int) for number in numbers)
+        whole = whole and all({"bytes", "blake2b"} == mark.keys() for mark in segment.files.values())
+    except (OSError, ValueError, TypeError, AttributeError) as error:
+        raise DataError(f"{record} cannot be read ({error})") from error
+    if not whole:
+        raise DataError(f"{record} is no record of {folder.name}")
+    return segment
 
 
-def write_record(folder: Path, segment: Segment) -> None:
-    """Write the record of a segment into its folder, which marks the segment as finished."""
-    (folder / RECORD).write_text(json.dumps(asdict(segment), indent=1), encoding="utf-8")
+def marks_in(folder: Path) -> dict[str, dict[str, Any]]:
+    """Size and hash of all files in a segment's folder that a later step relies on, by name: not its logs."""
+    files = sorted(file for file in folder.rglob("*") if file.is_file())
+    return {
+        str(file.relative_to(folder)): mark_of(file)
+        for file in files
+        if file.suffix != ".log" and file.name != RECORD
+    }
+
+
+def write_record(folder: Path, segment: Segment) -> Segment:
+    """Write the record of a segment into its folder, which marks the segment as finished.
+
+    Returns
+    -------
+    Segment
+        With the marks of all its files.
+    """
+    segment = replace(segment, files=marks_in(folder))
+    write_text(folder / RECORD, json.dumps(asdict(segment), indent=1))
+    return segment
 
 
 def keep_own_frames(
-    folder: Path, run: SegmentedRun, steps: tuple[int, int], frame_steps: int, suffix: str
+    folder: Path, run: SegmentedRun, steps: tuple[int, int], parameters: Mapping[str, float | str]
 ) -> None:
     """Keep exactly the frames that a segment owns: after its start, up to its end, and the run's very first.
 
@@ -154,18 +222,18 @@ def keep_own_frames(
     Raises
     ------
     UserError
-        Where a frame is missing or empty.
+        Where a frame is missing or not complete.
     """
     start, end = steps
+    frame_steps, suffix = int(parameters["frame_steps"]), parameters["dump_suffix"]
     if start > run.start_step:
         (folder / f"frame_{start}.{suffix}").unlink(missing_ok=True)
         start += frame_steps
     for step in range(start, end + 1, frame_steps):
         frame = folder / f"frame_{step}.{suffix}"
-        if not frame.exists() or frame.stat().st_size == 0:
-            raise UserError(
-                f"{frame} was not written: see the solver's log beside it, and check the disk's space"
-            )
+        dump = read_dump(frame, frame_columns(parameters))
+        if dump.step != step or len(dump.values) != int(parameters["number"]):
+            raise DataError(f"{frame} holds {len(dump.values)} particles at step {dump.step}")
 
 
 def manifest(run: SegmentedRun, segments: list[Segment]) -> dict[str, object]:
@@ -187,15 +255,9 @@ def manifest(run: SegmentedRun, segments: list[Segment]) -> dict[str, object]:
             for item in segments
             if item.start_step < step <= item.end_step or item.start_step == step == run.start_step
         )
-        file = state / owner.folder / f"frame_{step}.{parameters['dump_suffix']}"
-        frames.append(
-            {
-                "step": step,
-                "time_s": step * step_s,
-                "file": str(file),
-                "bytes": (run.results / file).stat().st_size,
-            }
-        )
+        name = f"frame_{step}.{parameters['dump_suffix']}"
+        place = {"step": step, "time_s": step * step_s, "file": str(state / owner.folder / name)}
+        frames.append(place | owner.files[name])
     return {
         "stamp": run.stamp,
         "ranks": run.ranks,

@@ -37,9 +37,12 @@ def read_series(path: Path) -> pd.DataFrame:
         The file cannot be read, or a column is missing.
     """
     try:
+        whole = path.read_bytes().endswith(b"\n")
         table = pd.read_csv(path)
     except (OSError, ValueError) as error:
         raise UserError(f"{path}: not readable ({error}); run run_dem again") from error
+    if not whole:
+        raise UserError(f"{path} is cut off: its last line has no end; run run_dem again")
     without_gas = "surface_angle_rad" in table or tuple(table) == FRAMES_COLUMNS
     needed = SERIES_COLUMNS if without_gas else (*SERIES_COLUMNS, *GAS_COLUMNS)
     missing = [name for name in needed if name not in table]

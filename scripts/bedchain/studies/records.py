@@ -5,6 +5,7 @@ import hashlib
 import json
 import re
 from collections.abc import Callable, Sequence
+from contextlib import suppress
 from pathlib import Path
 from typing import TypeVar
 
@@ -46,7 +47,9 @@ def record_of(folder: Path, key: str) -> Path:
 
 
 def remembered(record: Path, make: Callable[[], Result]) -> Result:
-    """A result read from its record; without a record it is made and recorded. An error leaves no record.
+    """A result read from its record; it is made and recorded where there is no record, or a damaged one.
+
+    An error leaves no record.
 
     Parameters
     ----------
@@ -55,7 +58,7 @@ def remembered(record: Path, make: Callable[[], Result]) -> Result:
     make : callable
         Returns a result that json can hold.
     """
-    if record.exists():
+    with suppress(FileNotFoundError, ValueError):
         recorded: Result = json.loads(record.read_text(encoding="utf-8"))
         return recorded
     result = make()

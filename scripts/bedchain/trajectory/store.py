@@ -17,7 +17,6 @@ simulated bed the file does not exist: all its particles are alike.
 
 import json
 import logging
-import re
 import shutil
 from dataclasses import dataclass
 from pathlib import Path
@@ -34,11 +33,13 @@ from bedchain.files import (
     write_npy_header,
     write_text,
 )
+from bedchain.marks import check_mark
 from bedchain.trajectory.dumps import frame_of, listed, read_dump
 
 LOG = logging.getLogger(__name__)
 
 STORED = ("x", "z", "vx", "vz")
+RECORD = "segment.json"  # of a segment of a DEM run, in its folder
 # share of an interval: frames are multiples of the DEM step, their times differ by round-off only
 TIME_TOLERANCE = 1e-6
 DISK_RESERVE_BYTES = 50_000_000
@@ -106,7 +107,7 @@ def read_manifest(path: Path) -> dict[str, Any]:
         before, after = (f"{at} (step {steps[at]}, {times[at]:g} s)" for at in (frame, frame + 1))
         raise UserError(
             f"{path}: frame {after} follows frame {before}, not one interval of {interval:g} s later; "
-            f"{remedy(manifest['frames'][frame + 1]['file'])}"
+            f"{make_again(path)}"
         )
     return manifest
 
@@ -168,9 +169,11 @@ def write_trajectory(
 def _read_frame(
     manifest: dict[str, Any], index: int, folder: Path, ids: np.ndarray | None, bounds: dict[str, float]
 ) -> np.ndarray:
-    """A checked frame; errors name the frame, the file and the segment to run again."""
+    """A checked frame; errors name the frame, the file and the way out."""
     entry, columns = manifest["frames"][index], manifest["columns"]
     try:
+        if "blake2b" in entry:
+            check_mark(folder / entry["file"], {name: entry[name] for name in ("bytes", "blake2b")})
         dump = read_dump(folder / entry["file"], columns)
         if dump.step != entry["step"]:
             raise UserError(f"its step is {dump.step}, {entry['step']} expected")
@@ -183,18 +186,29 @@ def _read_frame(
         wrong = (
             str(error).replace(f"{folder / entry['file']}: ", "").replace(str(folder / entry["file"]), "it")
         )
-        raise UserError(f"frame {index} of {entry['file']}: {wrong}; {remedy(entry['file'])}") from error
+        way_out = retract(folder / "dem.json", (folder / entry["file"]).parent)
+        raise UserError(f"frame {index} of {entry['file']}: {wrong}; {way_out}") from error
 
 
-def remedy(file: str) -> str:
-    """Remedy for a bad frame: the segment to run again."""
-    segment = re.search(r"segment_(\d+)", file)
-    if segment is None:
-        return "delete the run's folder and run again"
-    folder = file[: segment.end()]
-    return (
-        f"rerun segment {int(segment[1])}: delete {folder}, the segments after it and dem.json, and run again"
-    )
+def retract(dem: Path, segment: Path) -> str:
+    """Take back that a segment is finished, so that the next run makes it again; returns what to do.
+
+    Its record gets another name and the run's manifest goes. A folder that is no segment stays as it is: its
+    frames came from elsewhere.
+
+    Parameters
+    ----------
+    dem : Path
+        The run's manifest, ``dem.json``.
+    segment : Path
+        Folder of the segment.
+    """
+    record = segment / RECORD
+    if not record.exists():
+        return f"put whole frames into {segment}, or simulate again into an empty folder"
+    record.replace(record.with_name(f"{RECORD}.damaged"))
+    dem.unlink(missing_ok=True)
+    return f"give the same command again: it makes {segment.name} again from the one before it"
 
 
 def trajectory_metadata(

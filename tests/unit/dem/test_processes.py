@@ -1,12 +1,27 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Child processes: their output in the log, their last words in the error, progress read from their lines."""
 
+import os
+import subprocess
+import sys
+import time
 from pathlib import Path
 
 import pytest
 
-from bedchain.dem.processes import Progress, error_lines, on_ranks, run_deck, run_logged, solver_environment
+from bedchain.dem.processes import (
+    SILENCE_S,
+    Progress,
+    error_lines,
+    longest_silence,
+    on_ranks,
+    run_deck,
+    run_logged,
+    solver_environment,
+)
 from bedchain.errors import UserError
+from made import ROOT
+from made.processes import wait_until
 
 
 def test_output_goes_to_the_log_line_by_line_and_is_appended(tmp_path):
@@ -43,6 +58,40 @@ def test_a_child_ends_when_its_reader_fails(tmp_path):
     assert len(numbers) == 1 and not Path(f"/proc/{numbers[0]}").exists()
 
 
+def test_a_program_that_says_nothing_is_ended_with_its_place_and_log(tmp_path):
+    log, began = tmp_path / "log", time.monotonic()
+    with pytest.raises(UserError) as caught:
+        run_logged(["sh", "-c", "echo progress time 0.3 s; exec sleep 600"], log, silence_s=0.5)
+    assert time.monotonic() - began < 10
+    message = str(caught.value)
+    assert "no line of output for 0.5 s" in message and "progress time 0.3 s" in message
+    assert message.endswith(f"its whole log: {log}")
+
+
+def test_a_program_that_goes_on_speaking_is_left_alone(tmp_path):
+    run_logged(["sh", "-c", "for i in 1 2 3 4; do sleep 0.3; echo $i; done"], tmp_path / "log", silence_s=1)
+    assert (tmp_path / "log").read_text().split() == ["1", "2", "3", "4"]
+
+
+def test_the_silence_allowed_grows_with_the_work_between_two_lines():
+    assert longest_silence(100) == SILENCE_S
+    assert longest_silence(81_000 * 5000) == pytest.approx(2025)
+
+
+def test_a_child_ends_with_the_process_that_runs_it(tmp_path):
+    code = (
+        "import sys; from pathlib import Path; from bedchain.dem.processes import run_logged;"
+        "run_logged(['sh', '-c', 'echo $$; exec sleep 600'], Path(sys.argv[1]), print)"
+    )
+    command = [sys.executable, "-uc", code, str(tmp_path / "log")]
+    environment = {**os.environ, "PYTHONPATH": str(ROOT / "scripts")}
+    with subprocess.Popen(command, stdout=subprocess.PIPE, text=True, env=environment) as runner:
+        child = Path("/proc", runner.stdout.readline().strip())
+        assert child.exists()
+        runner.kill()
+    wait_until(lambda: not child.exists())
+
+
 def test_without_an_error_line_the_last_lines_are_shown(tmp_path):
     (tmp_path / "log").write_text("\n\n".join(map(str, range(30))))
     assert error_lines(tmp_path / "log").split() == [str(line) for line in range(18, 30)]
@@ -50,10 +99,12 @@ def test_without_an_error_line_the_last_lines_are_shown(tmp_path):
 
 def test_decks_get_their_variables_and_ranks(tmp_path, monkeypatch):
     commands = []
-    monkeypatch.setattr("bedchain.dem.processes.run_logged", lambda command, log: commands.append(command))
+    monkeypatch.setattr(
+        "bedchain.dem.processes.run_logged", lambda command, log, silence_s: commands.append(command)
+    )
     run_deck(tmp_path / "in.x", {"steps": 5}, tmp_path / "log", ranks=2)
     liggghts = ["liggghts", "-in", str(tmp_path / "in.x"), "-log", "none", "-var", "steps", "5"]
-    assert commands == [["mpirun", "-np", "2", *liggghts]]
+    assert commands == [["mpirun", "-np", "2", "setpriv", "--pdeathsig", "KILL", *liggghts]]
     assert on_ranks(liggghts, 1) == liggghts
 
 

@@ -2,55 +2,17 @@
 """A run in segments with solvers that write what the real ones would; those are in tests/solver."""
 
 import json
+import shutil
 
+import pandas as pd
 import pytest
 
 from bedchain.dem import run as dem_run
 from bedchain.dem.parameter_files import write_parameters
-from bedchain.dem.segments import read_parameters
 from bedchain.errors import UserError
-from made import ROOT
+from bedchain.marks import mark_of, note_of
 from made.case_text import changed_case
-
-
-@pytest.fixture
-def folder(tmp_path, monkeypatch):
-    """A case's folder with its parameters, in the repository; a solver that is a file."""
-    monkeypatch.chdir(ROOT)
-    write_parameters(changed_case(tmp_path), tmp_path / "results")
-    (tmp_path / "bedFoam").touch()
-    monkeypatch.setattr(dem_run, "SOLVER", tmp_path / "bedFoam")
-    return tmp_path / "results"
-
-
-@pytest.fixture
-def starts(folder, monkeypatch):
-    """Times at which the solver was started; it fails at those in ``broken``."""
-    times, broken = [], set()
-    parameters = read_parameters(folder / "parameters.lig")
-    step_s, frame_steps = float(parameters["dem_step"]), int(parameters["frame_steps"])
-
-    def prepare_gas(gas, case_parameters, previous, settings):
-        gas.mkdir()
-        (gas / "settings.json").write_text(json.dumps(settings))
-
-    def run_logged(command, log, progress):
-        settings = json.loads((log.parent / "gas" / "settings.json").read_text())
-        times.append(settings["start_time"])
-        if settings["start_time"] in broken:
-            raise UserError("bedFoam ended with code 1")
-        for step in range(
-            round(settings["start_time"] / step_s), round(settings["end_time"] / step_s) + 1, frame_steps
-        ):
-            (log.parent / f"frame_{step}.bin").write_bytes(b"x")
-        rows = f"time_s,mean_height_m\n{settings['end_time']},0.1\n"
-        (log.parent / "gas" / "bed_series.csv").write_text(rows)
-        progress("totals simulated 0.5 wall 10 dem 7 exchange 1 gas 2")
-
-    monkeypatch.setattr(dem_run, "prepare_gas", prepare_gas)
-    monkeypatch.setattr(dem_run, "run_logged", run_logged)
-    monkeypatch.setattr(dem_run, "run_deck", lambda deck, variables, log, ranks: times.append(deck.name))
-    return times, broken
+from made.solver_files import write_dump, write_restart
 
 
 def test_a_run_settles_then_goes_on_segment_by_segment_and_does_nothing_twice(folder, starts):
@@ -62,7 +24,10 @@ def test_a_run_settles_then_goes_on_segment_by_segment_and_does_nothing_twice(fo
         0.5,
         1.0,
     ]
-    assert (folder / "bed_series.csv").read_text() == "time_s,mean_height_m\n0.5,0.1\n1.0,0.1\n"
+    series = pd.read_csv(folder / "bed_series.csv")["time_s"]
+    assert series.iloc[-1] == 1.0 and series.is_monotonic_increasing
+    for name in ("bed_series.csv", "dem.json"):
+        assert json.loads(note_of(folder / name).read_text()) == mark_of(folder / name)
     dem_run.run_dem(folder, 1.0, 0.5, 1)
     assert len(times) == 3
     # a longer run goes on, a shorter one leaves out what is beyond
@@ -109,3 +74,66 @@ def test_a_missing_solver_is_named(folder, tmp_path):
     (tmp_path / "bedFoam").unlink()
     with pytest.raises(UserError, match="bedFoam missing: run snakemake"):
         dem_run.input_files(folder)
+
+
+def frames(folder):
+    listed = json.loads((folder / "dem.json").read_text())["frames"]
+    return {frame["step"]: (folder / frame["file"]).read_bytes() for frame in listed}
+
+
+@pytest.mark.parametrize(
+    ("name", "again"),
+    [
+        ("segment_0001/particles.restart", [0.0]),
+        ("segment_0002/frame_31250.bin", [0.5]),
+        ("segment_0003/segment.json", [1.0]),
+        ("settled/particles.restart", ["in.settle"]),
+    ],
+)
+def test_a_damaged_segment_is_named_and_made_again_alone(folder, starts, name, again, capsys):
+    times, _ = starts
+    dem_run.run_dem(folder, 1.5, 0.5, 1)
+    before = frames(folder)
+    [file] = folder.glob(f"dem/*/{name}")
+    file.write_bytes(file.read_bytes()[:-9])
+    times.clear()
+    (folder / "dem.json").unlink()
+    dem_run.run_dem(folder, 1.5, 0.5, 1)
+    assert times == again  # the ones after it follow from the same bytes
+    assert frames(folder) == before
+    assert f"run_dem: {name.split('/')[0]} is made again, it is " in capsys.readouterr().out
+
+
+def test_segments_after_one_that_came_out_otherwise_are_made_again_too(folder, starts):
+    times, _ = starts
+    dem_run.run_dem(folder, 1.5, 0.5, 1)
+    [state] = folder.glob("dem/*/settled")
+    shutil.rmtree(state)
+    state.mkdir()
+    write_restart(state / "particles.restart", 7200, word=b"another.")
+    dem_run.write_record(state, dem_run.Segment(0, 0, 0, "settled", 0, 0, 0, 0))
+    times.clear()
+    dem_run.run_dem(folder, 1.5, 0.5, 1)
+    assert times == [0.0, 0.5, 1.0]
+
+
+def test_a_folder_that_is_left_over_is_made_again_once(folder, starts):
+    times, _ = starts
+    dem_run.run_dem(folder, 0.5, 0.5, 1)
+    [first] = folder.glob("dem/*/segment_0001")
+    shutil.copytree(first, first.with_name("segment_0002"))
+    (first / "segment.json").unlink()
+    times.clear()
+    dem_run.run_dem(folder, 1.0, 0.5, 1)
+    dem_run.run_dem(folder, 1.0, 0.5, 1)
+    assert times == [0.0, 0.5]
+
+
+def test_what_a_kill_lost_is_said(folder, starts, capsys):
+    dem_run.run_dem(folder, 0.5, 0.5, 1)
+    [first] = folder.glob("dem/*/segment_0001")
+    part = first.with_name("segment_0002.part")
+    part.mkdir()
+    write_dump(part / "frame_26250.bin", 26250, 7200)
+    dem_run.run_dem(folder, 1.0, 0.5, 1)
+    assert "within segment_0002, of which 1 frames are lost; it is made again" in capsys.readouterr().out

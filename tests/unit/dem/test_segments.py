@@ -1,11 +1,16 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Segments: their stamp, the frames that each owns, and the manifest of the whole run."""
+"""Segments: their stamp, the frames that each owns, their records, and the manifest of the whole run."""
+
+import json
 
 import pytest
 
 from bedchain.dem import segments
-from bedchain.dem.segments import Segment, SegmentedRun
-from bedchain.errors import UserError
+from bedchain.dem.segments import Segment, SegmentedRun, finished
+from bedchain.errors import DataError, UserError
+from bedchain.marks import mark_of
+from bedchain.trajectory.store import RECORD
+from made.solver_files import write_dump, write_gas, write_restart
 
 PARAMETERS = """# made
 variable dem_step equal 2e-05  # [s] time.dem_step_s
@@ -21,13 +26,22 @@ def run(tmp_path):
     """A run of two segments, at frames 0 to 4 and 4 to 6, with all its frames there."""
     (tmp_path / "parameters.lig").write_text(PARAMETERS)
     run = SegmentedRun(tmp_path, tmp_path, "a1b2", 2, 0, 600, "settled")
+    follows = ""
     for index, (start, end) in enumerate(((0, 400), (400, 600)), start=1):
         folder = run.state / f"segment_{index:04d}"
         folder.mkdir(parents=True)
         for step in range(start, end + 1, 100):
-            (folder / f"frame_{step}.bin").write_bytes(b"x" * (step + 1))
-        segments.write_record(folder, Segment(index, start, end, folder.name, 4.0, 3.0, 0.5, 0.25))
+            write_dump(folder / f"frame_{step}.bin", step, 7)
+        write_restart(folder / segments.RESTART, 7, word=b"%d" % index)
+        write_gas(folder / "gas", end * 2e-5)
+        (folder / "bedFoam.log").write_text("log")
+        segment = Segment(index, start, end, folder.name, 4.0, 3.0, 0.5, 0.25, follows)
+        follows = segments.write_record(folder, segment).state
     return run
+
+
+def both(run):
+    return [finished(run.state / f"segment_{index:04d}") for index in (1, 2)]
 
 
 def test_a_stamp_changes_with_every_input(tmp_path):
@@ -56,35 +70,97 @@ def test_parameters_are_numbers_and_words(run, tmp_path):
         segments.read_parameters(tmp_path / "none")
 
 
-def test_finished_segments_end_at_the_first_gap(run):
-    assert [item.end_step for item in segments.finished_segments(run.state)] == [400, 600]
-    (run.state / "segment_0001" / segments.RECORD).unlink()
-    assert segments.finished_segments(run.state) == []
+def test_a_record_knows_each_file_but_the_logs(run):
+    first, second = both(run)
+    assert (first.end_step, second.end_step) == (400, 600)
+    assert {"frame_0.bin", "particles.restart", "gas/0.008/U"} <= first.files.keys()
+    assert not {"bedFoam.log", RECORD} & first.files.keys()
+    assert first.files["frame_0.bin"] == mark_of(run.state / "segment_0001" / "frame_0.bin")
+    assert finished(run.state / "segment_0002", 400, first.state) == second
+    assert finished(run.state / "segment_0003") is None
+
+
+@pytest.mark.parametrize("name", ["particles.restart", "gas/0.012/U", "frame_500.bin", RECORD])
+@pytest.mark.parametrize("damage", ["cut", "missing", "longer", "empty"])
+def test_a_damaged_file_is_named(run, name, damage):
+    file = run.state / "segment_0002" / name
+    content = file.read_bytes()
+    file.unlink()
+    if damage != "missing":
+        file.write_bytes(
+            {"cut": content[: len(content) // 2], "longer": content + b"x", "empty": b""}[damage]
+        )
+    with pytest.raises(DataError, match=file.name):
+        finished(run.state / "segment_0002")
+
+
+def test_changed_bytes_are_seen_at_once_in_a_state_and_in_a_frame_when_it_is_read(run):
+    for name in ("frame_500.bin", "particles.restart"):
+        file = run.state / "segment_0002" / name
+        file.write_bytes(b"x" + file.read_bytes()[1:])
+        if name == "frame_500.bin":
+            assert finished(run.state / "segment_0002").end_step == 600
+    with pytest.raises(DataError, match="particles.restart was changed"):
+        finished(run.state / "segment_0002")
+
+
+def test_a_segment_must_go_on_from_the_state_before_it(run):
+    with pytest.raises(DataError, match="segment_0002 did not go on from the state before it"):
+        finished(run.state / "segment_0002", 400, "another")
+    with pytest.raises(DataError, match="segment_0002 begins at step 400"):
+        finished(run.state / "segment_0002", 500)
+
+
+@pytest.mark.parametrize(
+    ("key", "value"), [("folder", "segment_0001"), ("end_step", "600"), ("files", {"U": {}}), ("x", 1)]
+)
+def test_a_record_that_is_none_is_refused(run, key, value):
+    record = run.state / "segment_0002" / RECORD
+    record.write_text(json.dumps(json.loads(record.read_text()) | {key: value}))
+    with pytest.raises(DataError, match=RECORD):
+        finished(record.parent)
+
+
+def test_a_record_of_an_earlier_version_has_no_marks_and_gets_them(run):
+    record = run.state / "segment_0001" / RECORD
+    old = json.loads(record.read_text())
+    expected = old["files"]
+    del old["files"], old["follows"]
+    record.write_text(json.dumps(old))
+    assert finished(record.parent).files == expected
 
 
 def test_a_segment_keeps_the_frames_after_its_start_and_the_first_of_all(run):
+    parameters = segments.read_parameters(run.case / "parameters.lig")
     for index, steps in ((1, (0, 400)), (2, (400, 600))):
-        segments.keep_own_frames(run.state / f"segment_{index:04d}", run, steps, 100, "bin")
+        segments.keep_own_frames(run.state / f"segment_{index:04d}", run, steps, parameters)
     names = [sorted(file.name for file in folder.glob("frame_*")) for folder in sorted(run.state.iterdir())]
     assert names == [
         [f"frame_{step}.bin" for step in steps] for steps in ((0, 100, 200, 300, 400), (500, 600))
     ]
 
 
-@pytest.mark.parametrize("fault", ["missing", "empty"])
-def test_a_frame_that_is_not_there_is_named(run, fault):
+@pytest.mark.parametrize("fault", ["missing", "empty", "cut", "of another step"])
+def test_a_frame_that_is_not_complete_is_named(run, fault):
     frame = run.state / "segment_0001" / "frame_200.bin"
-    frame.unlink() if fault == "missing" else frame.write_bytes(b"")
-    with pytest.raises(UserError, match="frame_200.bin was not written: see the solver's log"):
-        segments.keep_own_frames(frame.parent, run, (0, 400), 100, "bin")
+    content = frame.read_bytes()
+    frame.unlink()
+    if fault == "of another step":
+        write_dump(frame, 300, 7)
+    elif fault != "missing":
+        frame.write_bytes(content[: {"empty": 0, "cut": -8}[fault]])
+    with pytest.raises(UserError, match=r"frame_200.bin"):
+        parameters = segments.read_parameters(run.case / "parameters.lig")
+        segments.keep_own_frames(frame.parent, run, (0, 400), parameters)
 
 
-def test_the_manifest_lists_each_frame_once_with_its_owner(run):
-    manifest = segments.manifest(run, segments.finished_segments(run.state))
+def test_the_manifest_lists_each_frame_once_with_its_owner_and_its_mark(run):
+    manifest = segments.manifest(run, both(run))
     assert [frame["step"] for frame in manifest["frames"]] == [0, 100, 200, 300, 400, 500, 600]
     owners = [frame["file"].split("/")[-2] for frame in manifest["frames"]]
     assert owners == ["segment_0001"] * 5 + ["segment_0002"] * 2
-    assert [frame["bytes"] for frame in manifest["frames"]] == [1, 101, 201, 301, 401, 501, 601]
+    for frame in manifest["frames"]:
+        assert mark_of(run.results / frame["file"]) == {key: frame[key] for key in ("bytes", "blake2b")}
     assert manifest["frame_interval_s"] == pytest.approx(2e-3) and manifest["number"] == 7
     assert manifest["segments"][1] == {
         "index": 2, "start_s": pytest.approx(8e-3), "end_s": pytest.approx(0.012),

@@ -45,3 +45,11 @@ def test_a_result_is_made_once_and_a_failure_is_not_kept(tmp_path):
         assert remembered(record, lambda: made.append(1) or {"rms": 0.5}) == {"rms": 0.5}
     assert made == [1]
     assert record_of(tmp_path / "new", "static 41") != record
+
+
+@pytest.mark.parametrize("damaged", ["", '{"rms": 0.', "\0\0"])
+def test_a_damaged_record_is_made_again(tmp_path, damaged):
+    record = record_of(tmp_path, "static 40")
+    record.write_text(damaged)
+    assert remembered(record, lambda: {"rms": 0.5}) == {"rms": 0.5}
+    assert remembered(record, lambda: None) == {"rms": 0.5}

@@ -8,8 +8,9 @@ import numpy as np
 import pytest
 
 from bedchain.errors import UserError
-from bedchain.trajectory.store import open_trajectory, read_manifest, remedy, write_trajectory
-from made.synthetic_bed import STAMP, rolling_bed, write_run
+from bedchain.marks import mark_of
+from bedchain.trajectory.store import RECORD, open_trajectory, read_manifest, write_trajectory
+from made.synthetic_bed import rolling_bed, write_run
 
 TIMES = np.round(np.arange(0, 0.2 + 1e-9, 0.025), 6)
 
@@ -54,8 +55,11 @@ def test_columns_that_the_dumps_lack_are_nothing_or_refused(bed):
 @pytest.mark.parametrize(
     ("change", "message"),
     [
-        (lambda m: m["frames"].pop(3), "frame 3 .* follows frame 2 .*rerun segment 1"),
-        (lambda m: m["frames"].insert(6, m["frames"][6]), "frame 7 .* follows frame 6 .*rerun segment 2"),
+        (lambda m: m["frames"].pop(3), "frame 3 .* follows frame 2 .*./run --force .*dem.json"),
+        (
+            lambda m: m["frames"].insert(6, m["frames"][6]),
+            "frame 7 .* follows frame 6 ",
+        ),
         (lambda m: m.update(frames=m["frames"][:1]), "lists 1 frames, at least 2 are needed"),
         (lambda m: m.pop("frame_interval_s"), "no readable manifest"),
     ],
@@ -69,7 +73,7 @@ def test_a_manifest_that_is_not_in_order_is_refused(bed, change, message):
 def test_a_frame_of_another_step_or_with_a_particle_less_leaves_nothing(bed, tmp_path):
     _, dem = bed
     changed(dem, lambda manifest: manifest["frames"][5].update(step=7000))
-    with pytest.raises(UserError, match="frame 5 of .*its step is 6250, 7000 expected; rerun segment 2"):
+    with pytest.raises(UserError, match="frame 5 of .*its step is 6250, 7000 expected; put whole frames"):
         parse(dem)
     changed(dem, lambda manifest: manifest.update(number=21))
     with pytest.raises(UserError, match="frame 0 of .*it holds 20 particles, 21 expected"):
@@ -85,9 +89,17 @@ def test_a_store_of_another_shape_is_refused(bed):
         open_trajectory(dem.parent / "trajectory.npy", dem.parent / "trajectory.json")
 
 
-def test_the_remedy_names_the_segment_or_the_run():
-    assert f"delete dem/{STAMP}/segment_0020, the" in remedy(f"dem/{STAMP}/segment_0020/frame_5.bin")
-    assert remedy("frame_5.bin") == "delete the run's folder and run again"
+def test_a_frame_with_other_bytes_has_its_segment_made_again(bed):
+    _, dem = bed
+    frame = dem.parent / json.loads(dem.read_text())["frames"][5]["file"]
+    changed(dem, lambda manifest: manifest["frames"][5].update(mark_of(frame)))
+    (frame.parent / RECORD).write_text("{}")
+    content = bytearray(frame.read_bytes())
+    content[-1] ^= 1  # one bit of a velocity
+    frame.write_bytes(content)
+    with pytest.raises(UserError, match="frame 5 of .*changed.*same command again: it makes segment_0002"):
+        parse(dem)
+    assert not dem.exists() and [file.name for file in frame.parent.glob("*.json*")] == [f"{RECORD}.damaged"]
 
 
 @pytest.mark.parametrize(
