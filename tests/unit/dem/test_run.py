@@ -11,6 +11,7 @@ from bedchain.dem import run as dem_run
 from bedchain.dem.parameter_files import write_parameters
 from bedchain.errors import UserError
 from bedchain.marks import mark_of, note_of
+from bedchain.work_folders import work_folder
 from made.case_text import changed_case
 from made.solver_files import write_dump, write_restart
 
@@ -133,7 +134,7 @@ def test_what_a_kill_lost_is_said(folder, starts, capsys):
     dem_run.run_dem(folder, 0.5, 0.5, 1)
     [first] = folder.glob("dem/*/segment_0001")
     part = first.with_name("segment_0002.part")
-    part.mkdir()
+    work_folder(part)
     write_dump(part / "frame_26250.bin", 26250, 7200)
     dem_run.run_dem(folder, 1.0, 0.5, 1)
     assert "within segment_0002, of which 1 frames are lost; it is made again" in capsys.readouterr().out
