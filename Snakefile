@@ -14,6 +14,7 @@ from snakemake.cli import get_argument_parser
 
 sys.path.insert(0, f"{workflow.basedir}/scripts")
 
+from bedchain.case.chosen import is_auto
 from bedchain.command_line.failures import failure_report
 from bedchain.lifetime import begin_run, end_all_at_sigterm
 from bedchain.workflow import (
@@ -50,6 +51,8 @@ FIGURES = f"results/{FOLDER}/figures"
 LOGS = f"logs/{FOLDER}"
 BENCHMARKS = f"benchmarks/{FOLDER}"
 MODELS = CASE["chain"]["models"]
+CHOICE = f"{RESULTS}/choice.csv"
+SETTLED = {"choice": CHOICE} if is_auto(CASE) else {}  # input of the rules that need the lag or the cells
 REPEATS = range(1, CASE["comparison"]["repeats"] + 1)
 FORMS = {form: f".{form}" for form in ["png", "pdf", "csv"]}
 SOLVER = "results/bin/bedFoam"

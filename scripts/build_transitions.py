@@ -16,7 +16,7 @@ from bedchain.trajectory.store import BedFiles
 
 def build_transitions(
     bed: BedFiles, transitions: Path, model: str, estimator: str, lag_s: float, learning: Window,
-    options: dict[str, Any] | None = None, choice: list[Path] | None = None,
+    options: dict[str, Any] | None = None, choice: Path | None = None,
 ) -> None:  # fmt: skip
     """Count the moves between cells in a window and make a chain of them, for its steps and fractions of one.
 
@@ -34,7 +34,7 @@ def build_transitions(
     learning : Window
     options : dict, optional
         Settings of this model only.
-    choice : list of Path, optional
+    choice : Path, optional
         ``choice.csv``, whose lag and cells the model ``chosen`` has instead of those of the case.
 
     Raises
@@ -45,7 +45,7 @@ def build_transitions(
     run = open_bed(bed)
     grid = run.grid
     if model == registry.CHOSEN and choice:
-        lag_s, columns, rows = read_choice(choice[0])
+        lag_s, columns, rows = read_choice(choice)
         grid = Grid(grid.width_m, grid.height_m, columns, rows)
     frames = run.frames(grid, learning.frames(run.times_s))
     lag = lag_frames(lag_s, frames.interval_s)

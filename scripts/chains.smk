@@ -13,7 +13,7 @@ rule choose_chain:
         code("choose_chain"),
         **TRAJECTORY,
     output:
-        choice=f"{RESULTS}/choice.csv",
+        choice=CHOICE,
         curve=f"{RESULTS}/choice_curve.csv",
     log:
         f"{LOGS}/choose_chain.log",
@@ -31,6 +31,7 @@ rule assign_cells:
     input:
         code("assign_cells"),
         **TRAJECTORY,
+        **SETTLED,
     output:
         cells=f"{RESULTS}/cells.npz",
     log:
@@ -51,7 +52,7 @@ rule build_transitions:
         code("build_transitions"),
         **TRAJECTORY,
         cells=rules.assign_cells.output.cells,
-        choice=lambda wildcards: [rules.choose_chain.output.choice] if wildcards.model == "chosen" else [],
+        choice=lambda wildcards: CHOICE if SETTLED or wildcards.model == "chosen" else [],
     output:
         transitions=f"{RESULTS}/transitions_{{model}}.npz",
     log:
@@ -120,6 +121,7 @@ rule discuss_errors:
     input:
         code("discuss_errors"),
         **TRAJECTORY,
+        **SETTLED,
         mixing=rules.compare_mixing.output.mixing,
     output:
         discussion=f"{RESULTS}/discussion.csv",

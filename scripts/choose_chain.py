@@ -58,8 +58,10 @@ def choose_chain(
     run = open_realisation("the run", bed.trajectory, bed.metadata)
     places = run.values[learning.frames(run.times_s)]
     x_m, z_m, size = thinned(places[:, 0]), thinned(places[:, 1]), (run.width_m, run.height_m)
+    stays = np.isfinite(x_m).all(axis=0) & np.isfinite(z_m).all(axis=0)  # those that come and go have no lag
+    x_m, z_m, number = x_m[:, stays], z_m[:, stays], round(places.shape[2] * stays.mean())
     dispersion = dispersion_by_lag(x_m, z_m, run.interval_s)
-    lag = choose_lag(dispersion, places.shape[2], diameter_m)
+    lag = choose_lag(dispersion, number, diameter_m)
     lag = raised(lag, dispersion, np.stack((x_m, z_m)))
     cells = choose_cells((x_m, z_m), size, splits, diameter_m, lag.frames)
     rows = [*lag_rows(lag, dispersion), *cell_rows(cells, size), *basis_rows(lag, dispersion)]

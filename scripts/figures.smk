@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 # The figures, of tables and arrays that the other rules make: one table, and the rule that each of its rows makes.
-from bedchain.workflow import cell_size
+from bedchain.workflow import cell_size, settled
 
 COLOURS = {source: CASE["figures"][f"{source}_colour"] for source in ["dem", *MODELS]}
 CELLS = f"{RESULTS}/cells.npz"
@@ -73,25 +73,25 @@ FIGURE_RULES = {
     },
     "plot_choice": {
         "name": "fig_choice",
-        "input": {"choice": f"{RESULTS}/choice.csv", "curve": f"{RESULTS}/choice_curve.csv"},
+        "input": {"choice": CHOICE, "curve": f"{RESULTS}/choice_curve.csv"},
     },
     "plot_stationarity": {
         "name": "fig_stationarity",
-        "input": {**TRAJECTORY, "bed_series": RUN["bed_series"]},
+        "input": {**TRAJECTORY, **SETTLED, "bed_series": RUN["bed_series"]},
         "output": {"stationarity": f"{RESULTS}/stationarity.csv"},
         "params": {
             **pick(CASE, "mixing", "bed.thickness_m", "particles.diameter_m"),
             "start_s": CASE["learning"]["start_s"],
             "end_s": CASE["comparison"]["end_s"],
-            "row_m": CASE["bed"]["height_m"] / CASE["cells"]["rows"],
+            "row_m": settled(CASE, lambda case: case["bed"]["height_m"] / case["cells"]["rows"]),
         },
     },
     "plot_discussion": {
         "name": "fig_discussion",
-        "input": {"discussion": f"{RESULTS}/discussion.csv"},
+        "input": {**SETTLED, "discussion": f"{RESULTS}/discussion.csv"},
         "params": {
-            "own_cell_m": cell_size(CASE),
-            "own_lag_s": CASE["chain"]["lag_s"],
+            "own_cell_m": settled(CASE, cell_size),
+            "own_lag_s": settled(CASE, lambda case: case["chain"]["lag_s"]),
             "colours": {model: COLOURS[model] for model in OF_CASE},
         },
     },
@@ -102,10 +102,12 @@ if WORDS.get("studies", True):
     FIGURE_RULES |= {
         "plot_pareto": {
             "name": "fig_pareto",
-            "input": {"scores": f"{RESULTS}/scores.csv", "selection": f"{RESULTS}/selection.csv"},
+            "input": {**SETTLED, "scores": f"{RESULTS}/scores.csv", "selection": f"{RESULTS}/selection.csv"},
             "params": {
-                "baseline_lag_s": CASE["chain"]["lag_s"],
-                "baseline_cell_m": CASE["bed"]["width_m"] / CASE["cells"]["columns"],
+                "baseline_lag_s": settled(CASE, lambda case: case["chain"]["lag_s"]),
+                "baseline_cell_m": settled(
+                    CASE, lambda case: case["bed"]["width_m"] / case["cells"]["columns"]
+                ),
             },
         },
         "plot_best_mixing": {

@@ -141,6 +141,7 @@ rule score_models:
     input:
         code("score_models"),
         **TRAJECTORY,
+        **SETTLED,
         # an archive keeps the repeats' curves, not their positions
         repeats=expand(f"{BED}/repeats/{{repeat}}/trajectory.npy", repeat=[] if REFERENCE else REPEATS),
     output:
@@ -217,6 +218,7 @@ rule study_tradeoff:
     input:
         code("study_tradeoff"),
         **TRAJECTORY,
+        **SETTLED,
         case=ancient(f"cases/{NAME}/case.yaml"),
         bed_series=RUN["bed_series"],
         repeats=expand(rules.measure_mixing.output.mixing, repeat=REPEATS),

@@ -14,6 +14,7 @@ from pathlib import Path
 import numpy as np
 import pandas as pd
 
+from bedchain.case.chosen import with_choice
 from bedchain.case.load import load_case
 from bedchain.case.schema import Case
 from bedchain.dem.repeats import repeat_folder
@@ -59,7 +60,7 @@ def study_tradeoff(case_file: Path, folder: Path, variants: list[str], at_once: 
     UserError, DataError
         A window or a repeat lacks frames; no chain could be validated; there is no such variant.
     """
-    case = load_case(case_file)
+    case = with_choice(load_case(case_file), folder / "choice.csv")
     known = bed_variants(case)
     if unknown := sorted(set(variants) - set(known)):
         raise UserError(f"there is no variant {', '.join(unknown)}: take of {', '.join(known)}")

@@ -4,11 +4,12 @@
 import ast
 import shlex
 import sys
-from collections.abc import Collection, Mapping, Sequence
+from collections.abc import Callable, Collection, Mapping, Sequence
 from functools import cache, partial
 from pathlib import Path
 from typing import Any
 
+from bedchain.case.chosen import AUTO, is_auto, with_choice
 from bedchain.case.load import load_case, with_new_names
 from bedchain.case.names import case_name_problem, is_name
 from bedchain.case.parameters import solver_parameters
@@ -190,10 +191,36 @@ def pick(case: Case, *keys: str) -> dict[str, Any]:
     for key in keys:
         section, _, name = key.partition(".")
         part = {name: case[section][name]} if name else dict(case[section])
+        part = {last: _value(case, section, last, value) for last, value in part.items()}
         if shared := picked.keys() & part.keys():
             raise KeyError(f"{key}: {', '.join(sorted(shared))} is picked twice")
         picked |= part
     return picked
+
+
+def _value(case: Case, section: str, name: str, value: Any) -> Any:
+    return settled(case, lambda chosen: chosen[section][name]) if value == AUTO else value
+
+
+def settled(case: Case, value: Callable[[Case], Any]) -> Any:
+    """A param that rests on the lag or the cells of a case.
+
+    Parameters
+    ----------
+    case : dict
+        A checked case.
+    value : callable
+        From a case with numbers for its lag and cells.
+
+    Returns
+    -------
+    object
+        The value; where the case leaves them to choose_chain a function of the rule's input, choice.csv, of
+        which snakemake knows that the value is known once the file is there.
+    """
+    if not is_auto(case):
+        return value(case)
+    return lambda wildcards, input: value(with_choice(case, input.choice))
 
 
 def solver_values(case: Case) -> dict[str, str]:

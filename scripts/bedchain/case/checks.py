@@ -14,6 +14,7 @@ from bedchain.case import (  # noqa: F401
     stage_checks,
 )
 from bedchain.case.check_registry import CHECKS
+from bedchain.case.chosen import AUTO
 from bedchain.errors import Problem
 
 # where a case says nothing of it
@@ -37,7 +38,8 @@ def physical_problems(case: dict[str, Any], broken: set[str], lines: dict[str, i
     problems = []
     for keys, check in CHECKS:
         if all(key in values and key not in refused for key in keys):
-            findings = check(*(values[key] for key in keys))
+            given = [values[key] for key in keys]
+            findings = () if AUTO in given else check(*given)  # what a rule chooses later cannot be wrong
             problems += [Problem(key, wrong, remedy, lines.get(key)) for key, wrong, remedy in findings]
     return problems
 

@@ -1,11 +1,14 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""The lag and the cells that choose_chain chose: reading of choice.csv."""
+"""Lag and cells that a case leaves to choose_chain, the value auto, and those that it chose: choice.csv."""
 
 import csv
 from pathlib import Path
 from typing import NamedTuple
 
+from bedchain.case.schema import Case
 from bedchain.errors import UserError, make_again
+
+AUTO = "auto"
 
 
 class Chosen(NamedTuple):
@@ -49,3 +52,37 @@ def read_choice(file: Path | str) -> Chosen:
         return Chosen(lag_s, int(columns), int(rows))
     except (KeyError, ValueError) as error:
         raise UserError(f"{file} gives no {', '.join(Chosen._fields)}; {make_again(file)}") from error
+
+
+def is_auto(case: Case) -> bool:
+    """Whether a case leaves its lag or its cells to choose_chain."""
+    return AUTO in (case["chain"]["lag_s"], *(case["cells"][name] for name in ("columns", "rows")))
+
+
+def with_choice(case: Case, file: Path | str) -> Case:
+    """A case with the chosen numbers in the place of `AUTO`; one without any as it is, and no file is read.
+
+    Parameters
+    ----------
+    case : dict
+        A checked case.
+    file : path
+        ``choice.csv``.
+
+    Returns
+    -------
+    dict
+
+    Raises
+    ------
+    FileNotFoundError, UserError
+        As `read_choice`.
+    """
+    if not is_auto(case):
+        return case
+    chosen = read_choice(file)._asdict()
+    filled = {
+        section: {name: chosen[name] if value == AUTO else value for name, value in case[section].items()}
+        for section in ("cells", "chain")
+    }
+    return case | filled

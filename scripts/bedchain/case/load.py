@@ -12,6 +12,7 @@ from jsonschema import Draft202012Validator
 from jsonschema.exceptions import ValidationError
 
 from bedchain.case.checks import physical_problems
+from bedchain.case.chosen import AUTO
 from bedchain.case.frame_checks import FRAMES, simulation_problems, with_measured
 from bedchain.case.scene_checks import checked_keys
 from bedchain.case.schema import SCHEMA_FILE, Case, Schema, case_value, load_schema, schema_keys
@@ -58,6 +59,8 @@ def load_case(
         )
         raise CaseError(file, [problem])
     data = with_new_names(data, str(file))
+    if data.get("cells") == AUTO:
+        data["cells"] = {}
     if FRAMES in data:
         data, schema = _with_frames(data, schema, lines, file, measure)
     errors = Draft202012Validator(schema).iter_errors(data)
@@ -115,10 +118,16 @@ def give_hint(message: str) -> None:
     LOG.warning("hint: %s", message)
 
 
+def _kind(schema: Schema) -> str | None:
+    """Type of a value; of a number that may be `AUTO` that of the number."""
+    kind = schema.get("type")
+    return kind[0] if isinstance(kind, list) else kind
+
+
 def _with_defaults(data: Any, schema: Schema) -> Any:
-    if schema.get("type") == "integer" and isinstance(data, float) and data.is_integer():
+    if _kind(schema) == "integer" and isinstance(data, float) and data.is_integer():
         return int(data)
-    if schema.get("type") == "number" and isinstance(data, int) and not isinstance(data, bool):
+    if _kind(schema) == "number" and isinstance(data, int) and not isinstance(data, bool):
         return float(str(data))  # infinite beyond 1e308, which the schema refuses
     if schema.get("type") != "object" or not isinstance(data, dict):
         return data
@@ -192,7 +201,10 @@ def _wrong_value(error: ValidationError) -> tuple[str, str]:
     limit = ", ".join(map(str, limit)) if isinstance(limit, list) else limit
     rule = LIMITS.get(str(error.validator), "").format(limit)
     meaning = f" ({part['description']})" if "description" in part else ""
-    if error.validator == "type" and (other := _other_kind(part["type"], error.instance)):
+    if error.validator == "pattern" and isinstance(part["type"], list):
+        remedy = f"{DECIMAL[part['type'][0]]}, or {AUTO}"
+        return f"{error.instance!r} is not a number, and not {AUTO}", remedy + meaning
+    if error.validator == "type" and (other := _other_kind(_kind(part), error.instance)):
         return other[0], other[1] + meaning
     if not rule:
         return error.message, f"see the schema{meaning}"
@@ -204,7 +216,7 @@ def _short(value: Any) -> str:
     return text if len(text) <= MOST_LETTERS else f"{text[:MOST_LETTERS]}... ({len(text)} characters)"
 
 
-def _other_kind(wanted: str, value: Any) -> tuple[str, str] | None:
+def _other_kind(wanted: str | None, value: Any) -> tuple[str, str] | None:
     """Fault and remedy of text where a number is expected, or of a number where text is."""
     if wanted in DECIMAL and isinstance(value, str):
         return f"{value!r} is not a number", DECIMAL[wanted]

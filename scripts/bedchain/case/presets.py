@@ -10,6 +10,7 @@ from pathlib import Path
 from typing import Any
 
 from bedchain.case.checks import physical_problems
+from bedchain.case.chosen import AUTO
 from bedchain.case.names import NAME_RULE, is_name
 from bedchain.case.scene_checks import checked_keys
 from bedchain.case.schema import Case, load_schema
@@ -108,8 +109,7 @@ def with_preset(case: Case, preset: Preset, file: Path = PRESETS) -> Case:
     """A case whose chains are those of a preset.
 
     Cells are as near to the preset's as divisors of the bed allow that keep a line between groups on a border
-    of cells where the case has it on one; the lag is the nearest that divides both windows; the moments of
-    Figs. 3 and 4 are brought to whole steps.
+    of cells where the case has it on one; the lag is the nearest multiple of the frame interval.
 
     Parameters
     ----------
@@ -131,13 +131,12 @@ def with_preset(case: Case, preset: Preset, file: Path = PRESETS) -> Case:
     """
     lag_s = _lag(case, preset.lag_s)
     bed, cells, lines, diameter = case["bed"], case["cells"], case["mixing"], case["particles"]["diameter_m"]
-    columns = count_near(bed["width_m"], preset.cell_m, lines["split_x_m"], cells["columns"], diameter)
-    rows = count_near(bed["height_m"], preset.cell_m, lines["split_z_m"], cells["rows"], diameter)
-    steps = sorted({max(1, round(moment / lag_s)) for moment in case["figures"]["moments_s"]})
+    own = [1 if cells[name] == AUTO else cells[name] for name in ("columns", "rows")]
+    columns = count_near(bed["width_m"], preset.cell_m, lines["split_x_m"], own[0], diameter)
+    rows = count_near(bed["height_m"], preset.cell_m, lines["split_z_m"], own[1], diameter)
     changed = case | {
         "cells": cells | {"columns": columns, "rows": rows},
         "chain": case["chain"] | {"lag_s": lag_s, "models": [preset.model]},
-        "figures": case["figures"] | {"moments_s": [float(step * ratio(lag_s, 1.0)) for step in steps]},
     }
     if problems := physical_problems(checked_keys(changed), set(), {}):
         raise CaseError(f"{file}, {preset.name} on {case['title']}", problems)
@@ -205,13 +204,11 @@ def count_near(length_m: float, wanted_m: float, line_m: float, own: int, diamet
 
 
 def _lag(case: Case, wanted_s: float) -> float:
-    """Time of a step that divides the learning and the comparison window [s]."""
-    interval = case["time"]["frame_interval_s"]
-    windows = [
-        int(ratio(case[name]["end_s"], interval) - ratio(case[name]["start_s"], interval))
+    """Time of a step, a multiple of the frame interval and at most a window [s]."""
+    interval_s = case["time"]["frame_interval_s"]
+    lengths = [
+        ratio(case[name]["end_s"], interval_s) - ratio(case[name]["start_s"], interval_s)
         for name in ("learning", "comparison")
     ]
-    whole = math.gcd(*windows)
-    frames = [count for count in range(1, whole + 1) if whole % count == 0]
-    near = min(frames, key=lambda count: abs(math.log(count * interval / wanted_s)))
-    return float(near * ratio(interval, 1.0))
+    frames = min(max(1, round(wanted_s / interval_s)), max(1, int(min(lengths))))
+    return float(frames * ratio(interval_s, 1.0))

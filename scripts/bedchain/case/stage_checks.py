@@ -21,24 +21,9 @@ COLOURS = tuple(
 MAPS = ("figures.distribution_colour_map", "figures.snapshot_colour_map")
 
 
-@reads("chain.lag_s", "time.frame_interval_s", "comparison.start_s", "comparison.end_s")
-def lags_fill_the_comparison(lag: float, frame: float, start: float, end: float) -> Iterator[Finding]:
-    """Refuse a comparison that is no whole number of lags."""
-    if start < end and is_multiple(lag, frame) and ratio(end, lag) - ratio(start, lag) >= 1:
-        steps = ratio(end, lag) - ratio(start, lag)
-        if steps.denominator != 1:
-            nearest = float(start + int(steps) * lag)
-            wrong = f"{lag:g} s does not divide the comparison, {start:g} to {end:g} s"
-            yield "chain.lag_s", wrong, f"take another lag, or comparison.end_s {nearest:.10g}"
-
-
-@reads("figures.moments_s", "chain.lag_s")
-def moments_are_steps(moments: list[float], lag: float) -> Iterator[Finding]:
-    """Refuse moments that are no steps of the chain, or do not rise."""
-    for moment in moments:
-        if not is_multiple(moment, lag):
-            wrong = f"{moment:g} s is no multiple of chain.lag_s ({lag:g} s)"
-            yield "figures.moments_s", wrong, f"take {nearest_multiple(moment, lag):.10g}"
+@reads("figures.moments_s")
+def moments_rise(moments: list[float]) -> Iterator[Finding]:
+    """Refuse moments that do not rise."""
     if moments != sorted(set(moments)):
         yield "figures.moments_s", "the moments do not rise", f"take {sorted(set(moments))}"
 

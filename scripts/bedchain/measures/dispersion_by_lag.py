@@ -77,9 +77,11 @@ def dispersion_by_lag(
     Raises
     ------
     DataError
-        There are fewer than three frames.
+        There are fewer than three frames, or no particle.
     """
     n_frames = len(x_m)
+    if x_m.shape[1] == 0:
+        raise DataError("no particle is in all frames of the learning window: give chain.lag_s and cells")
     if n_frames < 3:
         raise DataError(f"{n_frames} frames hold no dispersion over lags: lengthen the learning window")
     places = np.stack((thinned(x_m), thinned(z_m)))

@@ -6,6 +6,7 @@ import json
 from pathlib import Path
 from typing import Any
 
+from bedchain.case.chosen import AUTO
 from bedchain.case.schema import Case, Schema, case_value, schema_keys
 from bedchain.errors import UserError
 from bedchain.files import path_inside, refuse_special_file
@@ -156,7 +157,7 @@ def _uneven_lines(provenance: dict[str, Any], case: Case) -> list[str]:
         f"cells.{name} {cells[name]}: {length:g} m in so many cells are no multiple of {level:g} m, to which "
         f"positions are rounded; take a divisor of {round(length / level)}"
         for name, length in (("columns", bed["width_m"]), ("rows", bed["height_m"]))
-        if ratio(length, level) % cells[name]
+        if cells[name] != AUTO and ratio(length, level) % cells[name]
     ]
     wrong += [
         f"mixing.{name} is {mixing[name]:g} m, no multiple of {level:g} m, to which positions are rounded"

@@ -81,15 +81,14 @@ def test_what_is_no_table_of_presets_is_refused(tmp_path):
             read_presets(file)
 
 
-def test_a_preset_changes_cells_lag_model_and_moments_only(short):
+def test_a_preset_changes_cells_lag_and_model_only(short):
     before = copy.deepcopy(short)
     changed = with_preset(short, preset())
     assert short == before
     # 5 columns would have the middle line within a cell, where the case has it on a border
     assert changed["cells"] == {"columns": 4, "rows": 20}
     assert changed["chain"]["lag_s"] == 0.2 and changed["chain"]["models"] == ["static"]
-    assert changed["figures"]["moments_s"] == [0.2, 0.6, 0.8, 1.0, 1.2]
-    for section in set(short) - {"cells", "chain", "figures"}:
+    for section in set(short) - {"cells", "chain"}:
         assert changed[section] == short[section]
 
 
@@ -101,9 +100,9 @@ def test_cells_divide_the_levels_of_an_archive_and_keep_lines_on_borders(paper):
     assert with_preset(paper, preset(0.05))["cells"] == {"columns": 5, "rows": 21}
 
 
-def test_the_lag_divides_both_windows(paper, short):
-    assert with_preset(paper, preset(lag_s=0.3))["chain"]["lag_s"] == 0.25
-    assert with_preset(short, preset(lag_s=0.3))["chain"]["lag_s"] == pytest.approx(0.25)
+def test_the_lag_is_the_nearest_multiple_of_the_frame_interval(paper, short):
+    assert with_preset(paper, preset(lag_s=0.33))["chain"]["lag_s"] == 0.325
+    assert with_preset(short, preset(lag_s=0.31))["chain"]["lag_s"] == pytest.approx(0.3)
     assert with_preset(short, preset(lag_s=1e-3))["chain"]["lag_s"] == 0.025
 
 
