@@ -20,7 +20,7 @@ from bedchain.uncertainty.bands import (
     block_steps,
     correlation_steps,
 )
-from bedchain.uncertainty.noise_floor import ROUND_OFF, noise_floor
+from bedchain.uncertainty.noise_floor import ROUND_OFF, floor_of, noise_floor
 
 Metric = dict[str, Any]
 
@@ -251,7 +251,8 @@ def noise_metrics(source: str, model: NDArray[np.float64], curves: NDArray[np.fl
     list of dict
         error_signed_of_mean, error_rms_of_mean: model - mean of the realisations; the rms of a perfect model
         is the noise floor over sqrt(n_realisations). error_over_noise: rms error against the main run over
-        the noise floor; it is 1 for the exact mean of the bed.
+        the noise floor; it is 1 for the exact mean of the bed. error_over_noise_mixing: the same of all four
+        curves against each realisation; it is 1.41 of another realisation.
     """
     floor, _ = noise_floor(curves[:, 1:])
     of_mean, of_run = curve_errors(model, curves.mean(axis=0)), curve_errors(model, curves[0])
@@ -264,4 +265,7 @@ def noise_metrics(source: str, model: NDArray[np.float64], curves: NDArray[np.fl
         if floor[column] > ROUND_OFF:
             over = of_run["error_rms"][column] / floor[column]
             rows.append(metric(f"error_over_noise_{group}", source, over))
+    if (of_all := floor_of(curves[:, 1:])) > ROUND_OFF:
+        error = np.sqrt(np.mean((model[1:] - curves[:, 1:]) ** 2))
+        rows.append(metric("error_over_noise_mixing", source, error / of_all))
     return rows

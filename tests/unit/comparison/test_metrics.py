@@ -87,6 +87,9 @@ def test_a_chain_that_is_the_mean_has_the_floor_as_its_error():
     for group in ("left", "right", "low", "up"):
         # the rms of 2000 draws is known to 1.6 %
         assert found[f"error_over_noise_{group}"] == pytest.approx(1, abs=0.05)
+    assert found["error_over_noise_mixing"] == pytest.approx(1, abs=0.02)
+    another = values(noise_metrics("static", curves[0], curves))["error_over_noise_mixing"]
+    assert another == pytest.approx(2**0.5, abs=0.05)
         # the mean of 100 realisations is off by a tenth of the noise
         assert found[f"error_rms_of_mean_{group}"] == pytest.approx(0.005, rel=0.1)
     off = values(noise_metrics("static", np.full((2000, 4), 0.6), curves))
@@ -97,4 +100,5 @@ def test_a_chain_that_is_the_mean_has_the_floor_as_its_error():
 def test_equal_realisations_give_a_floor_of_nothing_and_no_ratio():
     curves = of_all_groups([[1, 0.8, 0.6]] * 3)
     assert values(floor_metrics(curves))["noise_floor_left"] == pytest.approx(0, abs=1e-15)
-    assert "error_over_noise_left" not in values(noise_metrics("static", curves[0], curves))
+    equal = values(noise_metrics("static", curves[0], curves))
+    assert not {"error_over_noise_left", "error_over_noise_mixing"} & equal.keys()
