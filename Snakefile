@@ -63,6 +63,7 @@ TRAJECTORY = {"trajectory": f"{BED}/trajectory.npy", "metadata": f"{BED}/traject
 GAS = CASE["gas"]["model"] != "none"  # without it nothing of OpenFOAM is built or run
 FRAMES = "frames" in CASE  # another code's or an experiment's, in place of the simulation
 DEM = [] if FRAMES else RUN["dem"]
+OPEN = CASE.get("outside") == "exit"  # particles enter and leave
 CLAIMS = source_files(f"cases/{NAME}", "claims.csv")  # about both chains of the paper
 MODEL_FIGURES = {"static": "fig3_static", "dynamic": "fig4_dynamic"}
 PLOTS = [
@@ -78,6 +79,7 @@ PLOTS = [
     "fig_timescales",
     "fig_choice",
     "fig_stationarity",
+    *(["fig_residence"] if OPEN else []),
     *(["fig_discussion"] if {*MODEL_FIGURES} & {*MODELS} else []),
 ]
 
@@ -99,6 +101,7 @@ rule all:
                 "table1.csv",
                 *(["left_out.csv"] if FRAMES else ["audit.csv"]),
                 "provenance.json",
+                *(["residence.csv"] if OPEN else []),
                 *(["agreement.csv"] if CLAIMS and {*MODEL_FIGURES} <= {*MODELS} else []),
             ],
         ),

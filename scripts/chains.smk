@@ -117,6 +117,28 @@ rule compare_mixing:
         "compare_mixing.py"
 
 
+# Of a bed that particles enter and leave (outside: exit).
+rule measure_residence:
+    input:
+        code("measure_residence"),
+        **TRAJECTORY,
+        cells=rules.assign_cells.output.cells,
+    output:
+        residence=f"{RESULTS}/residence.csv",
+    log:
+        f"{LOGS}/measure_residence.log",
+    benchmark:
+        f"{BENCHMARKS}/measure_residence.tsv"
+    conda:
+        "../envs/python.yaml"
+    params:
+        **pick(CASE, "chain.lag_s"),
+        learning=CASE["learning"],
+        comparison=pick(CASE, "comparison.start_s", "comparison.end_s"),
+    script:
+        "measure_residence.py"
+
+
 rule discuss_errors:
     input:
         code("discuss_errors"),

@@ -97,6 +97,15 @@ FIGURE_RULES = {
     },
 }
 
+# of a bed that particles enter and leave
+FIGURE_RULES |= {
+    "plot_residence": {
+        "name": "fig_residence",
+        "input": {"residence": f"{RESULTS}/residence.csv"},
+        "params": {"colours": {"dem": COLOURS["dem"], "chain": CASE["figures"]["static_colour"]}},
+    },
+}
+
 # of the studies `scores` and `tradeoff`
 if WORDS.get("studies", True):
     FIGURE_RULES |= {

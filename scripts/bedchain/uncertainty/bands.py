@@ -11,6 +11,7 @@ from typing import TypeVar
 
 import numpy as np
 from numpy.typing import NDArray
+from scipy import stats
 
 from bedchain.errors import DataError
 from bedchain.trajectory.frames import Frames
@@ -216,3 +217,117 @@ def memory(frames: Frames, split_x_m: float) -> float:
     left = np.array([(x < split_x_m).mean() for x in frames.x_m])
     height = np.array([z.mean() for z in frames.z_m])
     return max(correlation_steps(left), correlation_steps(height))
+
+
+# five equal blocks of a window, each left out in turn
+Array = NDArray[np.floating]
+BLOCKS = 5
+LEVEL = 0.95
+STUDENT = float(stats.t.ppf((1 + LEVEL) / 2, BLOCKS - 1))
+# a shorter window does not tell its own error: its blocks are not independent
+FEWEST_CORRELATION_TIMES = 5
+
+
+def block_edges(n_steps: int) -> NDArray[np.int64]:
+    """First step of each of the equal blocks of a window, and its end; (BLOCKS + 1,)."""
+    return np.round(np.linspace(0, n_steps, BLOCKS + 1)).astype(np.int64)
+
+
+def kept_blocks() -> NDArray[np.bool_]:
+    """Blocks that are kept while each is left out in turn, (BLOCKS, BLOCKS)."""
+    return ~np.eye(BLOCKS, dtype=bool)
+
+
+def kept_steps(kept: NDArray[np.bool_], n_steps: int) -> NDArray[np.int64]:
+    """Weight of each step, 1 in blocks that are kept and 0 in those left out; (n_steps,).
+
+    Parameters
+    ----------
+    kept : (BLOCKS,) bool array
+        Such as a row of `kept_blocks`.
+    n_steps : int
+        Steps in the window.
+    """
+    return np.repeat(np.asarray(kept, np.int64), np.diff(block_edges(n_steps)))
+
+
+def means_left_out(series: NDArray[np.floating]) -> Array:
+    """Means over time of a series without each block in turn.
+
+    Parameters
+    ----------
+    series : (n_steps, ...) array
+        Values at each step.
+
+    Returns
+    -------
+    (BLOCKS, ...) array
+    """
+    values = np.asarray(series, float)
+    weights = np.stack([kept_steps(kept, len(values)) for kept in kept_blocks()])
+    return np.tensordot(weights / weights.sum(axis=1, keepdims=True), values, axes=1)
+
+
+def block_band(
+    value: NDArray[np.floating] | float,
+    left_out: Array,
+    scale: str = "plain",
+    correlation_times: float = np.inf,
+) -> tuple[Array, Array]:
+    """Band that holds the truth with 95 %, from what is estimated without each block of time in turn.
+
+    Parameters
+    ----------
+    value : (...) array
+        Estimate from the whole window: curves, densities, times.
+    left_out : (BLOCKS, ...) array
+        The same without each block; NaN where there is none.
+    scale : {"plain", "positive", "share"}
+        The band is symmetric on the number itself, on its logarithm or on its logit, so that it stays
+        above 0, or between 0 and 1.
+    correlation_times : float
+        Correlation times in the window [1]; with fewer than `FEWEST_CORRELATION_TIMES` the window is too
+        short to know.
+
+    Returns
+    -------
+    low, high : (...) array
+        NaN where the window is too short, or an estimate is missing.
+    """
+    value = np.asarray(value, np.float64)
+    if correlation_times < FEWEST_CORRELATION_TIMES or len(left_out) != BLOCKS:
+        return np.full(value.shape, np.nan), np.full(value.shape, np.nan)
+    to, back = _SCALES[scale]
+    with np.errstate(all="ignore"):
+        low, high = (np.asarray(back(end)) for end in _ends(to(value), to(left_out)))
+        # an estimate at the end of its scale, such as the share 1: the band of the number itself, cut there
+        edge = ~(np.isfinite(to(value)) & np.isfinite(to(left_out)).all(axis=0)) & np.isfinite(value)
+        plain = np.clip(_ends(value, left_out), *_BOUNDS[scale])
+    return np.where(edge, plain[0], low), np.where(edge, plain[1], high)
+
+
+def _ends(value: Array, left_out: Array) -> tuple[Array, Array]:
+    spread = left_out - left_out.mean(axis=0)
+    half = STUDENT * np.sqrt((BLOCKS - 1) / BLOCKS * (spread**2).sum(axis=0))
+    return value - half, value + half
+
+
+def _same(value: Array) -> Array:
+    return np.asarray(value, float)
+
+
+def _logit(share: Array) -> Array:
+    return np.asarray(np.log(share) - np.log1p(-np.asarray(share)))
+
+
+def _logistic(value: Array) -> Array:
+    return np.asarray(1 / (1 + np.exp(-value)))
+
+
+# kinds of numbers, by how their bands are symmetric, and their bounds
+_SCALES: dict[str, tuple[Callable[[Array], Array], Callable[[Array], Array]]] = {
+    "plain": (_same, _same),
+    "positive": (np.log, np.exp),
+    "share": (_logit, _logistic),
+}
+_BOUNDS = {"plain": (-np.inf, np.inf), "positive": (0, np.inf), "share": (0, 1)}
