@@ -80,6 +80,7 @@ PLOTS = [
     "fig_choice",
     "fig_stationarity",
     *(["fig_residence"] if OPEN else []),
+    *(["fig_segregation"] if "marks" in CASE else []),
     *(["fig_discussion"] if {*MODEL_FIGURES} & {*MODELS} else []),
 ]
 
@@ -102,6 +103,7 @@ rule all:
                 *(["left_out.csv"] if FRAMES else ["audit.csv"]),
                 "provenance.json",
                 *(["residence.csv"] if OPEN else []),
+                *(["segregation.csv"] if "marks" in CASE else []),
                 *(["agreement.csv"] if CLAIMS and {*MODEL_FIGURES} <= {*MODELS} else []),
             ],
         ),

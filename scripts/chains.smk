@@ -139,6 +139,30 @@ rule measure_residence:
         "measure_residence.py"
 
 
+# Of the marks that a case names.
+rule measure_segregation:
+    input:
+        code("measure_segregation"),
+        **TRAJECTORY,
+        cells=rules.assign_cells.output.cells,
+    output:
+        segregation=f"{RESULTS}/segregation.csv",
+    log:
+        f"{LOGS}/measure_segregation.log",
+    benchmark:
+        f"{BENCHMARKS}/measure_segregation.tsv"
+    conda:
+        "../envs/python.yaml"
+    params:
+        **pick(CASE, "chain.lag_s", "chain.seed"),
+        marks=CASE.get("marks", []),
+        folder=f"cases/{NAME}",
+        learning=CASE["learning"],
+        comparison=pick(CASE, "comparison.start_s", "comparison.end_s"),
+    script:
+        "measure_segregation.py"
+
+
 rule discuss_errors:
     input:
         code("discuss_errors"),

@@ -97,8 +97,19 @@ FIGURE_RULES = {
     },
 }
 
-# of a bed that particles enter and leave
+# of a bed that particles enter and leave, and of marks of a case
 FIGURE_RULES |= {
+    "plot_segregation": {
+        "name": "fig_segregation",
+        "input": {"segregation": f"{RESULTS}/segregation.csv"},
+        "params": {
+            "colours": {
+                "dem": COLOURS["dem"],
+                "chain": CASE["figures"]["static_colour"],
+                "chain_by_mark": CASE["figures"]["dynamic_colour"],
+            }
+        },
+    },
     "plot_residence": {
         "name": "fig_residence",
         "input": {"residence": f"{RESULTS}/residence.csv"},

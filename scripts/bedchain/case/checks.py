@@ -9,6 +9,7 @@ from bedchain.case import (  # noqa: F401
     chain_checks,
     frame_checks,
     gas_checks,
+    mark_checks,
     scene_checks,
     size_checks,
     stage_checks,

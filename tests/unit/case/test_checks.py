@@ -22,7 +22,7 @@ NAMES = {
     "drum_is_round_and_flat", "gas_cells_fit", "gas_cells_resolve_the_bed", "gas_is_light",
     "gas_step_is_stable", "gas_step_resolves_the_fall", "gas_steps_nest", "lag_fits",
     "lengths_are_in_metres", "steps_can_be_counted",
-    "models_go_with_the_cells", "round_cells_fit_the_bed",
+    "marks_have_one_rule", "models_go_with_the_cells", "round_cells_fit_the_bed",
     "moments_are_frames", "particles_carry_the_bed", "particles_fit", "particles_fit_into_the_drum",
     "ranks_share_gas_evenly", "repeats_start_at_a_segment", "seed_is_prime", "splits_lie_in_bed",
     "step_is_stable", "steps_nest", "windows_lie_in_time",
