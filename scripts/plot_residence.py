@@ -54,10 +54,8 @@ def plot_residence(residence: Path, files: FigureFiles, colours: dict[str, str])
             axes.set(xlabel="time after entering [s]", ylabel=label, xlim=(0, None), ylim=(0, None))
         for source, colour in colours.items():
             panels[0].axvline(number(table, source, "mean"), color=colour, ls=DASHES[source], lw=0.6)
-        panels[0].text(
-            0.98, 0.03, "\n".join(caption(table, source) for source in colours), ha="right", va="bottom",
-            transform=panels[0].transAxes, fontsize=6.5, color=LINE_COLOUR,
-        )  # fmt: skip
+        note = "\n".join(caption(table, source) for source in colours)
+        panels[0].set_title(note, fontsize=6.5, color=LINE_COLOUR, loc="left")
         panels[1].legend(title="with 95 % bands", title_fontsize=7)
         files.save(figure)
     write_csv(table, files.csv)

@@ -14,7 +14,7 @@ from bedchain.stage import run_stage
 LABELS = {
     "lacey_index": "Lacey index [1]",
     "coefficient_of_variation": "coefficient of variation [1]",
-    "height_separation": "mean height less that of the others,\nover that of all [1]",
+    "height_separation": "separation by height [1]",
 }
 # limits of the index: separated, and the expected index of a random mixture
 LIMITS = {"lacey_index": {"separated": 0.0, "random": 1.0}, "height_separation": {"random": 0.0}}
