@@ -63,7 +63,7 @@ TRAJECTORY = {"trajectory": f"{BED}/trajectory.npy", "metadata": f"{BED}/traject
 GAS = CASE["gas"]["model"] != "none"  # without it nothing of OpenFOAM is built or run
 FRAMES = "frames" in CASE  # another code's or an experiment's, in place of the simulation
 DEM = [] if FRAMES else RUN["dem"]
-OPEN = CASE.get("frames", {}).get("outside") == "exit"  # particles enter and leave
+OPEN = CASE.get("outside") == "exit"  # particles enter and leave
 CLAIMS = source_files(f"cases/{NAME}", "claims.csv")  # about both chains of the paper
 MODEL_FIGURES = {"static": "fig3_static", "dynamic": "fig4_dynamic"}
 PLOTS = [

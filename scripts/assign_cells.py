@@ -59,7 +59,8 @@ def assign_cells(
     values, described = bed.open()
     grid = Grid(
         described["width_m"], described["height_m"], division.columns, division.rows,
-        division.thickness_m, division.layers, form=division.form, axis=division.axis,
+        described.get("depth_m", division.thickness_m), division.layers,
+        form=division.form, axis=division.axis,
     )  # fmt: skip
     grid.check_resolution(diameter_m)
     y_row = described["columns"].index("y") if "y" in described["columns"] else None

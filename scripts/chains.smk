@@ -42,7 +42,7 @@ rule assign_cells:
         "../envs/python.yaml"
     params:
         **pick(CASE, "cells", "particles.diameter_m", "bed.thickness_m"),
-        outside=CASE.get("frames", {}).get("outside", "refuse"),
+        outside=CASE.get("outside", "refuse"),
     script:
         "assign_cells.py"
 
@@ -117,7 +117,7 @@ rule compare_mixing:
         "compare_mixing.py"
 
 
-# Of a bed that particles enter and leave (frames.outside: exit).
+# Of a bed that particles enter and leave (outside: exit).
 rule measure_residence:
     input:
         code("measure_residence"),

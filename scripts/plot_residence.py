@@ -14,7 +14,7 @@ from bedchain.stage import run_stage
 
 PANELS = {
     "left_share": "F: share that has left [1]",
-    "leaving_rate": "E: share that leaves in a second [1/s]",
+    "leaving_rate": "E: share that leaves [1/s]",
 }
 DASHES = {"dem": "-", "chain": (0, (4, 1.5))}
 NAMES = {"dem": "DEM", "chain": "chain"}

@@ -142,7 +142,7 @@ def open_chain(parts: Sequence[Counts], lag_s: float) -> OpenChain:
     if not (lost.any() and inserted.any()):
         raise DataError(
             "no particle entered or none left in the window, so that it has no residence time: take a longer "
-            "window, or frames.outside: refuse for a closed bed"
+            "window, or outside: refuse for a closed bed"
         )
     total = np.asarray(moves.sum(axis=1)).ravel() + lost
     shut = shut_in(moves, lost > 0)

@@ -10,7 +10,7 @@ from bedchain.physics.whole_numbers import is_multiple
 from made import ROOT
 from made.case_text import END, assert_refused, changed_case
 
-OPTIONAL = ("preset", "marks", "cells.layers", "cells.form", "cells.axis")
+OPTIONAL = ("preset", "outside", "marks", "cells.layers", "cells.form", "cells.axis")
 
 
 @pytest.mark.parametrize("name", ["short", "paper", "mueller", "drum"])
