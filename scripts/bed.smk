@@ -198,6 +198,7 @@ if FRAMES:
         params:
             **pick(CASE, "bed.width_m", "bed.height_m"),
             section=CASE["frames"],
+            outside=CASE.get("outside", "refuse"),
             folder=f"cases/{NAME}",
         script:
             "import_frames.py"

@@ -3,7 +3,7 @@
 
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 import pandas as pd
@@ -16,6 +16,14 @@ from bedchain.trajectory.store import open_trajectory
 from bedchain.trajectory.survey import cached_survey, check_even
 
 CHUNK_FRAMES = 50
+
+
+class Box(NamedTuple):
+    """The bed: its size [m], and whether particles may leave it."""
+
+    width_m: float
+    height_m: float
+    outside: str
 
 
 @dataclass(frozen=True)
@@ -38,8 +46,7 @@ class Tables:
 
 
 def import_frames(
-    section: dict[str, Any], folder: Path, width_m: float, height_m: float, targets: Targets, tables: Tables,
-    progress: bool = True,
+    section: dict[str, Any], folder: Path, box: Box, targets: Targets, tables: Tables, progress: bool = True
 ) -> None:  # fmt: skip
     """Store the frames, check them as physics, and say what is left out.
 
@@ -49,8 +56,7 @@ def import_frames(
         Section ``frames`` of the case, complete.
     folder : Path
         Of the case.
-    width_m, height_m : float
-        Size of the bed [m].
+    box : Box
     targets : Targets
     tables : Tables
     progress : bool
@@ -64,7 +70,7 @@ def import_frames(
     settings = settings_of(section)
     frames = cached_survey(settings, folder, targets.metadata.with_name("frames.json"), whole_box=False)
     check_even(frames)
-    motion = write_imported(frames, settings, placement_of(section, width_m, height_m), targets, progress)
+    motion = write_imported(frames, settings, placement_of(section, *box), targets, progress)
     store, about = open_trajectory(targets.trajectory, targets.metadata)
     write_csv(bed_series(store, np.array(about["times_s"])), tables.bed_series)
     write_csv(motion.table(), tables.motion)

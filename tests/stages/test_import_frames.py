@@ -8,12 +8,12 @@ import pandas as pd
 
 from bedchain.dem.series import read_series
 from bedchain.trajectory.imported import Targets
-from import_frames import Tables, import_frames
+from import_frames import Box, Tables, import_frames
 from made.forms import STEP_S, moving, write_form
 
 SECTION = {
     "files": "*.dump", "step_s": STEP_S, "length_unit_m": 1.0, "time_unit_s": 1.0, "across": "x", "up": "z",
-    "outside": "refuse", "keep_depth": False, "without_ids": "refuse", "origin_m": [-0.05, 0.0, -0.02],
+    "keep_depth": False, "without_ids": "refuse", "origin_m": [-0.05, 0.0, -0.02],
 }  # fmt: skip
 
 
@@ -23,7 +23,7 @@ def test_frames_are_stored_with_their_series_and_a_table_of_what_is_left_out(tmp
     targets = Targets(*(tmp_path / name for name in ("trajectory.npy", "trajectory.json", "particles.npz")))
     tables = Tables(*(tmp_path / f"{name}.csv" for name in ("bed_series", "motion", "left_out")))
     with caplog.at_level(logging.INFO, "bedchain"):
-        import_frames(SECTION, tmp_path / "in", 0.1, 0.2, targets, tables, progress=False)
+        import_frames(SECTION, tmp_path / "in", Box(0.1, 0.2, "refuse"), targets, tables, progress=False)
     heights = read_series(tables.bed_series)["mean_height_m"]
     np.testing.assert_allclose(heights, series.positions[:, :, 2].mean(axis=1) + 0.02, rtol=1e-5)
     assert len(pd.read_csv(tables.motion)) == 5

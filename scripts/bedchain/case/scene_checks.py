@@ -39,12 +39,16 @@ def used_keys(case: dict[str, Any]) -> dict[str, Any]:
 def checked_keys(case: dict[str, Any]) -> dict[str, Any]:
     """`used_keys`, and ``scene``: shape and gas model, such as ``box, coupled`` or ``drum, none``.
 
-    A case of frames has no scene, and the time of its last frame is ``frames.end_s``.
+    A case of frames is ``frames, none``, and the time of its last frame is ``frames.end_s``.
     """
     if FRAMES in case:
         used = used_keys(case)
         frames = used[FRAMES] | {"end_s": used["time"].get("end_s")}
-        return used | {FRAMES: frames, "time": {"frame_interval_s": used["time"].get("frame_interval_s")}}
+        return used | {
+            "scene": "frames, none",
+            FRAMES: frames,
+            "time": {"frame_interval_s": used["time"].get("frame_interval_s")},
+        }
     gas = case.get("gas")
     model = gas.get("model") if isinstance(gas, dict) else None
     return used_keys(case) | {"scene": f"{'drum' if 'drum' in case else 'box'}, {model}"}

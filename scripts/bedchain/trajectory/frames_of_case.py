@@ -17,6 +17,7 @@ Case = dict[str, Any]
 MOMENTS = (1, 2, 4, 8, 16, 32)  # of the figures, in lags
 CELL_SHARES = (40, 20, 10, 5, 3)  # of the discussion, cells in the width
 GAS_CELL_DIAMETERS = 5  # in which the film shows the voidage
+DEEP_DIAMETERS = 1.5  # from there on the third axis is stored
 DIGITS = 9
 
 
@@ -28,16 +29,14 @@ def settings_of(section: Case) -> FrameSettings:
     return FrameSettings(**{key: section[key] for key in keys if key in section}, reading=reading)
 
 
-def placement_of(section: Case, width_m: float, height_m: float) -> Placement:
+def placement_of(section: Case, width_m: float, height_m: float, outside: str) -> Placement:
     """Placement of the bed from the section ``frames`` of a case, with its defaults and its origin."""
-    keys = ("across", "up", "outside", "keep_depth", "without_ids")
+    keys = ("across", "up", "keep_depth", "without_ids")
     left, front, bottom = section["origin_m"]
     return Placement(
-        **{key: section[key] for key in keys},
-        origin_m=(left, front, bottom),
-        width_m=width_m,
-        height_m=height_m,
-    )
+        **{key: section[key] for key in keys}, origin_m=(left, front, bottom), width_m=width_m,
+        height_m=height_m, outside=outside,
+    )  # fmt: skip
 
 
 def measured_sections(case: Case, folder: Path, cache: Path) -> Case:
@@ -75,7 +74,7 @@ def measured_sections(case: Case, folder: Path, cache: Path) -> Case:
     cell_sizes = [float(f"{width / count:.4g}") for count in CELL_SHARES if width / count >= diameter]
     thickness = {"thickness_m": sizes[1]} if sizes[1] >= diameter else {}
     return {
-        "frames": {"origin_m": list(origin)},
+        "frames": {"origin_m": list(origin), "keep_depth": sizes[1] > DEEP_DIAMETERS * diameter},
         "bed": {"width_m": sizes[0], "height_m": sizes[2], **thickness},
         "particles": {"number": frames.number, "diameter_m": diameter},
         "time": {"end_s": frames.entries[-1].time_s, "frame_interval_s": interval},

@@ -283,7 +283,7 @@ class _Keeper:
             raise UserError(
                 f"{place}: other particles than in the first frame ({'; '.join(parts)}); where particles "
                 "come and "
-                "go, say frames.outside: exit"
+                "go, say outside: exit"
             )
         self.lost += gone if self.sizes else 0
         self.gained += fresh.size if self.sizes else 0
@@ -325,8 +325,7 @@ class _Keeper:
                     f"{place}: {outside.sum()} of {position.size} particles are outside the bed, 0 to "
                     f"{size:g} m "
                     f"along its {name} (id {listed(frame.ids[outside])}; by up to {beyond:.3g} m): check "
-                    "frames.length_unit_m, frames.origin_m and the size of the bed, or say frames.outside: "
-                    "exit"
+                    "frames.length_unit_m, frames.origin_m and the size of the bed, or say outside: exit"
                 )
 
     @property

@@ -9,7 +9,7 @@ from made.forms import BOX, STEP_S, moving, write_form
 
 SERIES = moving()
 DEFAULTS = {
-    "length_unit_m": 1.0, "time_unit_s": 1.0, "across": "x", "up": "z", "outside": "refuse",
+    "length_unit_m": 1.0, "time_unit_s": 1.0, "across": "x", "up": "z",
     "keep_depth": False, "without_ids": "refuse", "step_s": STEP_S,
 }  # fmt: skip
 
@@ -23,7 +23,7 @@ def sections(tmp_path, **case):
 def test_a_bed_is_where_its_frames_are(tmp_path):
     measured = sections(tmp_path)
     assert measured["bed"] == pytest.approx({"width_m": 0.1, "height_m": 0.2, "thickness_m": 0.01})
-    assert measured["frames"]["origin_m"] == pytest.approx(BOX[:, 0])
+    assert measured["frames"]["origin_m"] == pytest.approx(BOX[:, 0]) and measured["frames"]["keep_depth"]
     assert measured["particles"] == {"number": 20, "diameter_m": 0.001}
     assert measured["time"] == {"end_s": 0.05, "frame_interval_s": 0.01}
     assert measured["chain"]["lag_s"] == 0.01 and 0 < measured["mixing"]["split_z_m"] < 0.2
@@ -53,4 +53,4 @@ def test_a_section_becomes_settings_and_a_placement():
     section = DEFAULTS | {"files": "a*", "names": ["id", "x"], "columns": {"z": "h"}, "origin_m": [1, 2, 3]}
     settings = settings_of(section)
     assert settings.reading.names == ("id", "x") and settings.reading.columns == {"z": "h"}
-    assert placement_of(section, 4, 5).origin_m == (1, 2, 3)
+    assert placement_of(section, 4, 5, "exit").origin_m == (1, 2, 3)
