@@ -23,7 +23,7 @@ JUMP_RANGE = (0.6, 1.6)
 FEWEST_EXPLAINED = 0.25
 # of the correlation of the series, below which an interval does not follow its velocities
 LOST_TOUCH = 0.5
-REPEATED = 1e-3
+REPEATED = 1e-3  # of the usual displacement
 
 
 class Interval(NamedTuple):
@@ -70,29 +70,55 @@ class MotionCheck:
             }
         )
 
+    def slope(self) -> float | None:
+        """Median slope of the intervals; None where velocities explain too little of the displacements."""
+        slopes = np.array([part.slope for part in self.intervals])
+        moving = np.isfinite(slopes)
+        if not moving.any() or self.explained() < FEWEST_EXPLAINED:
+            return None
+        slope = float(np.median(slopes[moving]))
+        return slope if slope > 0 else None
+
+    def explained(self) -> float:
+        """Share of the displacements that velocities explain, the median of the intervals [1]."""
+        touch = np.array([part.correlation for part in self.intervals])
+        return float(np.median(touch[np.isfinite(touch)] ** 2)) if np.isfinite(touch).any() else 0.0
+
+    def still(self, part: Interval) -> bool:
+        """Whether hardly a particle moves in an interval, beside the others."""
+        usual = float(np.median([other.displacement_m for other in self.intervals]))
+        return part.displacement_m <= REPEATED * usual
+
+    def moves(self, part: Interval) -> bool:
+        """Whether an interval can be judged."""
+        return bool(np.isfinite(part.slope)) and not self.still(part)
+
     def warnings(self) -> list[str]:
         """What is wrong with the series, each with its frame and factor; empty for a sound one."""
-        if not self.intervals:
-            return []
-        messages = [_repeated(part) for part in self.intervals if part.displacement_m == 0 or _still(part)]
-        slopes = np.array([part.slope for part in self.intervals])
-        touch = np.array([part.correlation for part in self.intervals])
-        moving = np.isfinite(slopes) & np.isfinite(touch)
-        if not moving.any():
+        messages = [_repeated(part) for part in self.intervals if self.still(part)]
+        if not any(np.isfinite(part.correlation) for part in self.intervals):
             return messages
-        slope, explained = float(np.median(slopes[moving])), float(np.median(touch[moving] ** 2))
-        if explained < FEWEST_EXPLAINED:
-            return [*messages, _unrelated(explained)]
+        slope = self.slope()
+        if slope is None:
+            return [*messages, _unrelated(self.explained())]
         if not SLOPE_RANGE[0] <= slope <= SLOPE_RANGE[1]:
             messages.append(_wrong_scale(slope))
-        for part in self.intervals:
+        lost = {at - 1 for at in seams(self)}
+        for at, part in enumerate(self.intervals):
             factor = part.slope / slope
-            if part.displacement_m == 0 or _still(part) or not np.isfinite(factor):
-                continue
-            lost = part.correlation < LOST_TOUCH * np.sqrt(explained)
-            if lost or not JUMP_RANGE[0] <= factor <= JUMP_RANGE[1]:
-                messages.append(_jump(part, factor, lost, _usual(self.intervals, part)))
+            if at in lost or (self.moves(part) and not JUMP_RANGE[0] <= factor <= JUMP_RANGE[1]):
+                messages.append(_jump(part, factor, at in lost, _usual(self.intervals, part)))
         return messages
+
+
+def seams(check: MotionCheck) -> list[int]:
+    """Numbers of the frames that do not follow from the one before: displacements ignore the velocities."""
+    least = LOST_TOUCH * np.sqrt(check.explained())
+    if check.slope() is None:
+        return []
+    return [
+        at + 1 for at, part in enumerate(check.intervals) if check.moves(part) and part.correlation < least
+    ]
 
 
 def _interval(
@@ -113,10 +139,6 @@ def _interval(
     correlation = product / np.sqrt(square * moved_square) if square > 0 and moved_square > 0 else np.nan
     distance = float(np.sqrt((moved**2).sum(axis=0)).mean()) if moved.size else 0.0
     return Interval(before, after, float(slope), float(correlation), distance)
-
-
-def _still(part: Interval) -> bool:
-    return bool(np.isfinite(part.slope) and abs(part.slope) < REPEATED)
 
 
 def _name(entry: Entry) -> str:

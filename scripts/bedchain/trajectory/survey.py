@@ -23,6 +23,7 @@ LOG = logging.getLogger(__name__)
 # of an interval: times of tables have few digits
 UNEVEN = 1e-3
 BOX_DIGITS = 3  # of a box that is made of the particles' positions
+STEPS = " by frames.first_step and frames.last_step"
 DIGITS = 12  # of a time, so that 12000 steps of 1e-5 s are 0.12 s
 
 
@@ -360,21 +361,22 @@ def check_even(frames: Survey) -> None:
     UserError
         The first uneven pair is named, with the factor.
     """
-    times = np.array([entry.time_s for entry in frames.entries])
+    entries, times = frames.entries, np.array([entry.time_s for entry in frames.entries])
     if len(times) < 2:
-        raise UserError(f"{frames.entries[0].file}: a single frame; a chain is learned from many")
+        raise UserError(f"{entries[0].file}: a single frame; a chain is learned from many")
     gaps, interval = np.diff(times), frames.interval_s
     for at in np.flatnonzero(np.abs(gaps - interval) > UNEVEN * interval)[:1]:
-        before, after = (_place(frames.entries[at + shift]) for shift in (0, 1))
+        before, after = (_place(entries[at + shift]) for shift in (0, 1))
         raise UserError(
             f"frames are not evenly spaced: {after} is {gaps[at] / interval:.4g} intervals of {interval:g} "
             "s after "
-            f"{before}; take a stretch of even frames by frames.first_step and frames.last_step"
+            f"{before}; take a stretch of even frames" + (STEPS if entries[at].step is not None else "")
         )
 
 
 def _place(entry: Entry) -> str:
-    return f"{Path(entry.file).name}" + ("" if entry.step is None else f" (step {entry.step})")
+    clock = f"{entry.time_s:g} s" if entry.step is None else f"step {entry.step}"
+    return f"{Path(entry.file).name} ({clock})"
 
 
 def cached_survey(settings: FrameSettings, folder: Path, cache: Path, whole_box: bool = True) -> Survey:

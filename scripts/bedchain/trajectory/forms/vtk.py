@@ -2,6 +2,7 @@
 """Frames in VTK's files, one a file: legacy (.vtk), VTP, VTU, and PVD collections, by pyvista."""
 
 import re
+import warnings
 import xml.etree.ElementTree as ElementTree
 from collections.abc import Iterator, Mapping
 from functools import partial
@@ -103,7 +104,8 @@ def _values(path: Path, renamed: Mapping[str, str]) -> Columns:
     import pyvista  # slow to import
 
     try:
-        with pyvista.VtkErrorCatcher(raise_errors=True, emit_warnings=False):
+        with warnings.catch_warnings(), pyvista.VtkErrorCatcher(raise_errors=True, emit_warnings=False):
+            warnings.simplefilter("ignore")  # what VTK warns of, it also raises
             mesh = pyvista.read(path)
         if not isinstance(mesh, pyvista.PointSet | pyvista.PolyData | pyvista.UnstructuredGrid):
             raise DataError(f"a data set of the kind {type(mesh).__name__} holds no particles")

@@ -1,0 +1,68 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""First cases: what they say of sound frames, of millimetres, of two runs in one folder, and refusals."""
+
+from pathlib import Path
+
+import numpy as np
+import pytest
+import yaml
+
+from bedchain.errors import UserError
+from bedchain.trajectory.first_case import first_case
+from bedchain.trajectory.survey import FrameSettings
+from made.forms import BOX, STEP_S, moving, write_form
+
+SERIES = moving(n_frames=20, n_particles=60)
+
+
+def case_of(pattern, **more):
+    return yaml.safe_load(first_case(FrameSettings(str(pattern), **more), Path(), "frames").text)
+
+
+@pytest.mark.parametrize("form", ["text", "vtk"])
+def test_the_step_is_estimated_and_the_bed_measured(tmp_path, form):
+    case = case_of(write_form(form, tmp_path, SERIES))
+    assert case["frames"]["step_s"] == pytest.approx(STEP_S)
+    assert case["frames"]["origin_m"] == pytest.approx(BOX[:, 0], abs=5e-3)
+    assert case["bed"] == pytest.approx({"width_m": 0.1, "height_m": 0.2}, abs=5e-3)
+    assert case["particles"] == {"diameter_m": 0.001}
+    assert case["learning"] == {"start_s": 0.02, "end_s": 0.1} and case["comparison"]["end_s"] == 0.19
+    rows = case["cells"]["rows"] * case["mixing"]["split_z_m"] / case["bed"]["height_m"]
+    assert rows == pytest.approx(round(rows), abs=1e-4)
+
+
+def test_millimetres_are_told(tmp_path):
+    scaled = SERIES._replace(
+        positions=SERIES.positions * 1e3, velocities=SERIES.velocities * 1e3, radii=SERIES.radii * 1e3
+    )
+    case = case_of(write_form("table", tmp_path, scaled))
+    assert case["frames"]["length_unit_m"] == 0.001 and case["particles"] == {"diameter_m": 0.001}
+    assert case["bed"]["height_m"] == pytest.approx(0.2, abs=5e-3)
+
+
+def test_of_two_runs_the_longer_is_taken(tmp_path):
+    other = moving(n_frames=6, n_particles=60, seed=9)
+    both = SERIES._replace(
+        positions=np.concatenate((SERIES.positions, other.positions)),
+        velocities=np.concatenate((SERIES.velocities, other.velocities)),
+        steps=np.arange(26) * 1000,
+    )
+    case = case_of(write_form("text", tmp_path, both))
+    assert case["frames"]["last_step"] == 19000 and "first_step" not in case["frames"]
+
+
+def test_frames_without_ids_say_what_that_means(tmp_path):
+    for frame in range(9):
+        rows = "\n".join(",".join(map(str, row)) for row in SERIES.positions[frame][:, [0, 2]])
+        (tmp_path / f"f{frame}.csv").write_text("x,z\n" + rows + "\n")
+    text = first_case(FrameSettings(f"{tmp_path}/*", step_s=0.1), Path(), "frames").text
+    assert "without_ids: order  # no ids" in text and "a guess" in text
+
+
+def test_what_cannot_be_a_case_is_refused(tmp_path):
+    pattern = write_form("text", tmp_path, moving(n_frames=5))
+    with pytest.raises(UserError, match="5 frames of 20 particles; at least 9"):
+        case_of(pattern)
+    still = SERIES._replace(velocities=0 * SERIES.velocities)
+    with pytest.raises(UserError, match="no velocities to estimate them by: give --step_s"):
+        case_of(write_form("many_text", tmp_path / "still", still))
