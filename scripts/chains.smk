@@ -242,7 +242,13 @@ rule make_film:
         cells=rules.assign_cells.output.cells,
         transitions=expand(f"{RESULTS}/transitions_{{model}}.npz", model=MODELS),
     output:
-        film=f"{FIGURES}/film.mp4",
+        film=report(
+            f"{FIGURES}/film.mp4",
+            caption="captions/make_film.rst",
+            category=f"bed {FOLDER}",
+            subcategory="film",
+            labels={"figure": "film", "form": "mp4"},
+        ),
     log:
         f"{LOGS}/make_film.log",
     benchmark:
@@ -263,15 +269,21 @@ rule write_table:
         schema="cases/case.schema.yaml",
     output:
         csv=f"{RESULTS}/table1.csv",
-        png=f"{FIGURES}/table1.png",
-        pdf=f"{FIGURES}/table1.pdf",
+        html=report(
+            f"{RESULTS}/table1.html",
+            caption="captions/write_table.rst",
+            category=f"bed {FOLDER}",
+            subcategory="tables",
+            labels={"figure": "Table 1", "form": "html"},
+        ),
+        tex=f"{RESULTS}/table1.tex",
     log:
         f"{LOGS}/write_table.log",
     conda:
         "../envs/python.yaml"
     params:
-        **pick(CASE, "figures.resolution_dpi"),
         values=table_values(CASE),
+        with_paper=bool(CLAIMS),
     script:
         "write_table.py"
 

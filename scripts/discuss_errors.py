@@ -10,6 +10,7 @@ from typing import Any
 
 import numpy as np
 import pandas as pd
+from scipy import stats
 
 from bedchain.chains import registry
 from bedchain.comparison.curves import curve_errors, curves_of
@@ -83,7 +84,7 @@ def discuss_errors(
     mixing : Path
         ``mixing.csv``.
     discussion : Path
-        Table to make: quantity, source, cell_m, lag_s, part, value, unit.
+        Table to make: quantity, source, cell_m, lag_s, part, value, unit, ci_low, ci_high.
     learning, comparison : Window
     splits : Splits
     case : CaseChains
@@ -110,6 +111,7 @@ def discuss_errors(
                 chain = registry.learn(name, known, grid, lag, case.estimator)
                 remaining = chain.mixing(start, *splits, lengths[1] // lag)
                 found += error_rows(name, grid, chain.lag_s, remaining, mean[::lag])
+                found += signed_rows(name, grid, chain.lag_s, remaining, curves[:, ::lag])
         return found
 
     settings = list(product(dict.fromkeys([own_grid, *grids]), dict.fromkeys([own_lag, *lags])))
@@ -139,13 +141,15 @@ def cell_size(grid: Grid) -> float:
 
 
 def floor_rows(curves: np.ndarray) -> list[Row]:
-    """Noise floor of each group, where there are repeats."""
+    """Number of realisations, and the noise floor of each group where there are repeats."""
+    number = _row("realisations", "dem", np.nan, np.nan, "", len(curves), "1")
     if len(curves) < 2:
-        return []
+        return [number]
     floor, _ = noise_floor(curves[:, 1:])
+    floors = zip(GROUPS, floor, strict=True)
     return [
-        _row("noise_floor", "dem", np.nan, np.nan, group, value, "1")
-        for (_, group), value in zip(GROUPS, floor, strict=True)
+        number,
+        *(_row("noise_floor", "dem", np.nan, np.nan, group, value, "1") for (_, group), value in floors),
     ]
 
 
@@ -157,6 +161,27 @@ def error_rows(name: str, grid: Grid, lag_s: float, remaining: np.ndarray, dem: 
         for quantity in ("error_signed", "error_rms")
         for column, (_, group) in enumerate(GROUPS)
     ]
+
+
+def signed_rows(name: str, grid: Grid, lag_s: float, remaining: np.ndarray, runs: np.ndarray) -> list[Row]:
+    """Signed error of both groups of a direction together, with its 95 % interval by the runs of the DEM.
+
+    A chain is the same for all runs: its errors against each scatter as the runs themselves (Student).
+    """
+    errors = np.array([curve_errors(remaining, run)["error_signed"] for run in runs])
+    rows = []
+    for direction in dict.fromkeys(direction for direction, _ in GROUPS):
+        of_runs = errors[:, [at == direction for at, _ in GROUPS]].mean(axis=1)
+        ends = of_runs.mean() + half_width(of_runs) * np.array([-1, 1])
+        rows.append(_row("error_signed", name, cell_size(grid), lag_s, direction, of_runs.mean(), "1", *ends))
+    return rows
+
+
+def half_width(values: np.ndarray) -> float:
+    """Half of the 95 % interval of a mean of independent values; NaN of a single one."""
+    if len(values) < 2:
+        return np.nan
+    return float(stats.t.ppf(0.975, len(values) - 1) * values.std(ddof=1) / np.sqrt(len(values)))
 
 
 def spreading_rows(frames: Frames, grid: Grid, lag: int) -> list[Row]:
@@ -172,10 +197,13 @@ def spreading_rows(frames: Frames, grid: Grid, lag: int) -> list[Row]:
     ]
 
 
-def _row(quantity: str, source: str, cell_m: float, lag_s: float, part: str, value: float, unit: str) -> Row:
+def _row(
+    quantity: str, source: str, cell_m: float, lag_s: float, part: str, value: float, unit: str,
+    ci_low: float = np.nan, ci_high: float = np.nan,
+) -> Row:  # fmt: skip
     return {
         "quantity": quantity, "source": source, "cell_m": cell_m, "lag_s": lag_s, "part": part,
-        "value": float(value), "unit": unit,
+        "value": float(value), "unit": unit, "ci_low": float(ci_low), "ci_high": float(ci_high),
     }  # fmt: skip
 
 

@@ -6,7 +6,7 @@ COLOURS = {source: CASE["figures"][f"{source}_colour"] for source in ["dem", *MO
 CELLS = f"{RESULTS}/cells.npz"
 CHAIN_FILES = {"best": "scores_best"}
 
-# A row is a rule, named as its script. `name` is its figure without .png, .pdf, .csv, with wildcards where one rule
+# A row is a rule, named as its script; its caption is scripts/captions/<rule>.rst. `name` is its figure without .png, .pdf, .csv, with wildcards where one rule
 # draws several; `wildcards` says what they may be; a script takes what it is given by name, wildcards too.
 FIGURE_RULES = {
     "plot_cells": {
@@ -20,7 +20,14 @@ FIGURE_RULES = {
     },
     "plot_cost": {
         "name": "fig2_cost",
-        "input": {"timing": f"{RESULTS}/timing.csv"},
+        "input": {
+            "timing": f"{RESULTS}/timing.csv",
+            "dem": RUN["dem"],
+            "provenance": [
+                f"{RESULTS}/provenance.json",
+                *([f"{REFERENCE}/provenance.json"] if REFERENCE else []),
+            ],
+        },
         "params": {
             "window_s": CASE["comparison"]["end_s"] - CASE["comparison"]["start_s"],
             "colour": CASE["figures"]["cost_colour"],
@@ -60,6 +67,7 @@ FIGURE_RULES = {
     "plot_difference": {
         "name": "fig_difference",
         "input": {"cells": CELLS, **{model: f"{RESULTS}/chain_{model}.npz" for model in MODEL_FIGURES}},
+        "params": pick(CASE, "comparison.start_s"),
     },
     "plot_chapman_kolmogorov": {
         "name": "fig_chapman_kolmogorov",
@@ -155,7 +163,20 @@ def figure_rule(plot, row):
             code(plot),
             **row["input"],
         output:
-            multiext(f"{FIGURES}/{row['name']}", **FORMS),
+            **{
+                form: (
+                    report(
+                        f"{FIGURES}/{row['name']}{ending}",
+                        caption=f"captions/{plot}.rst",
+                        category=f"bed {FOLDER}",
+                        subcategory="figures",
+                        labels={"figure": row["name"], "form": form},
+                    )
+                    if form == "png"
+                    else f"{FIGURES}/{row['name']}{ending}"
+                )
+                for form, ending in FORMS.items()
+            },
             **row.get("output", {}),
         log:
             f"{LOGS}/{plot}_{row['name']}.log" if "wildcards" in row else f"{LOGS}/{plot}.log",

@@ -7,7 +7,16 @@ from matplotlib import pyplot as plt
 from matplotlib.axes import Axes
 from matplotlib.patches import Rectangle
 
-from bedchain.figures.style import SINGLE_COLUMN_IN, FigureFiles, close_frame, draw_particles, figure_style
+from bedchain.figures.style import (
+    MOST_SLENDER,
+    SINGLE_COLUMN_IN,
+    FigureFiles,
+    close_frame,
+    draw_particles,
+    figure_style,
+    footnote,
+    shown_height,
+)
 from bedchain.files import write_csv
 from bedchain.stage import run_stage
 from bedchain.trajectory.cell_store import frame_at
@@ -16,9 +25,13 @@ from bedchain.trajectory.realisations import open_bed
 from bedchain.trajectory.store import BedFiles
 
 # more cells than these cannot carry a number that can be read
-CORNER_COLUMNS, CORNER_ROWS = 5, 10
-WHOLE_BED_LABELS = 11
+CORNER_COLUMNS, CORNER_ROWS = 5, 12
+# rows of the bed whose first cell is named, at most
+NAMED_ROWS = 11
 GRID_COLOUR = "#666666"
+PANEL_IN, LOWEST_IN, TALLEST_IN = 1.15, 1.6, 4.4
+# room for axes and titles
+AROUND_IN = 0.75
 
 
 def plot_cells(bed: BedFiles, files: FigureFiles, time_s: float, diameter_m: float, colour: str) -> None:
@@ -45,19 +58,24 @@ def plot_cells(bed: BedFiles, files: FigureFiles, time_s: float, diameter_m: flo
     x, z = run.grid.picture(x, z, y_m)
     held = np.bincount(seen.cells[0][inside], minlength=run.grid.n_cells)
     grid = run.grid.shown
+    height = _height_to_show(grid, run.grid.projected(held))
+    columns = min(CORNER_COLUMNS, grid.columns)
+    rows = round(columns * grid.cell_width_m * height / grid.width_m / grid.cell_height_m)
+    rows = min(max(rows, 1), CORNER_ROWS, grid.rows)
     with figure_style():
-        shape = min(grid.height_m / grid.width_m, 3.0)
-        figure, (whole, corner) = plt.subplots(
-            1, 2, figsize=(SINGLE_COLUMN_IN, max(2.6, min(1.45 * shape, 4.6))), width_ratios=[1, 1]
-        )
-        _draw_whole_bed(whole, grid, x, z, diameter_m, colour)
-        _draw_corner(corner, whole, grid, x, z, diameter_m, colour)
-        whole.set(xlabel=run.grid.labels[0], ylabel=run.grid.labels[1])
-        corner.set_xlabel(run.grid.labels[0].split(" (")[0])
+        tall = min(max(PANEL_IN * height / grid.width_m, LOWEST_IN), TALLEST_IN)
+        figure, (whole, corner) = plt.subplots(1, 2, figsize=(SINGLE_COLUMN_IN, tall + AROUND_IN))
+        _draw_whole_bed(whole, grid, x, z, diameter_m, colour, height)
+        _draw_corner(corner, grid, x, z, diameter_m, colour, (columns, rows))
+        size = (columns * grid.cell_width_m, rows * grid.cell_height_m)
+        whole.add_patch(Rectangle((0, 0), *size, fill=False, edgecolor="black", linewidth=1.2, zorder=5))
+        across, up = run.grid.labels
+        whole.set(xlabel=across.split(" (")[0], ylabel=up)
+        corner.set_xlabel(across.split(" (")[0])
         whole.set_title(f"bed at {run.times_s[frame]:.2f} s")
-        corner.set_title("its lower left corner")
-        for axes in (whole, corner):
-            axes.set_anchor("S")
+        corner.set_title("lower left corner")
+        if note := _note(run.grid, height):
+            footnote(figure, note)
         files.save(figure)
     write_csv(cell_table(run.grid, held, run.times_s[frame]), files.csv)
 
@@ -92,28 +110,45 @@ def cell_table(grid: Grid, held: np.ndarray, time_s: float) -> pd.DataFrame:
     )
 
 
+def _note(grid: Grid, height: float) -> str:
+    """What the picture leaves out: cells above it, and what is behind it."""
+    above = f"The cells go on above, to {grid.shown.height_m:g} m: {grid.columns} x {grid.rows} in all."
+    behind = f"The picture is a projection ({grid.projection})."
+    return " ".join([above] * (height < grid.shown.height_m) + [behind] * bool(grid.projection))
+
+
+def _height_to_show(grid: Grid, held: np.ndarray) -> float:
+    """Height of the rows that hold particles, and one more, unless that is too flat or too slender [m]."""
+    height = max(shown_height(np.flatnonzero(held), grid), grid.width_m)
+    return min(height, MOST_SLENDER * grid.width_m, grid.height_m)
+
+
 def _draw_whole_bed(
-    axes: Axes, grid: Grid, x: np.ndarray, z: np.ndarray, diameter: float, colour: str
+    axes: Axes, grid: Grid, x: np.ndarray, z: np.ndarray, diameter: float, colour: str, height: float
 ) -> None:
     draw_particles(axes, x, z, diameter, facecolors=colour, linewidths=0)
     axes.vlines(grid.x_edges_m, 0, grid.height_m, colors=GRID_COLOUR, linewidths=0.25)
     axes.hlines(grid.z_edges_m, 0, grid.width_m, colors=GRID_COLOUR, linewidths=0.25)
-    axes.set(xlim=(0, grid.width_m), ylim=(0, grid.height_m), xlabel="x [m]", ylabel="z [m]")
-    axes.set_xticks([0, grid.width_m])
-    rows = np.unique(np.linspace(0, grid.rows - 1, min(WHOLE_BED_LABELS, grid.rows)).astype(int))
-    for row in rows:
-        last = (row + 1) * grid.columns - 1
-        axes.text(1.03 * grid.width_m, (row + 0.5) * grid.cell_height_m, str(last), va="center", fontsize=5.5)
-    axes.text(
-        1.27 * grid.width_m, grid.height_m / 2, "last cell of the row", rotation=90, va="center", fontsize=5.5
-    )
+    axes.set(xlim=(0, grid.width_m), ylim=(0, height), anchor="S")
+    axes.set_xticks([0, grid.width_m], ["0", f"{grid.width_m:g}"])
+    rows = np.arange(0, round(height / grid.cell_height_m), _every(height / grid.cell_height_m))
+    numbers = axes.secondary_yaxis("right")
+    numbers.set_yticks((rows + 0.5) * grid.cell_height_m, [str(row * grid.columns) for row in rows])
+    numbers.tick_params(labelsize=5.5, length=1.5)
+    numbers.set_ylabel("first cell of the row", fontsize=6.5)
     close_frame(axes, open_top=False)
 
 
+def _every(rows: float) -> int:
+    """Regular spacing of the rows that are named: 1, 2, 5, 10, 20, ..."""
+    steps = (lead * 10**power for power in range(9) for lead in (1, 2, 5))
+    return next(step for step in steps if rows <= NAMED_ROWS * step)
+
+
 def _draw_corner(
-    axes: Axes, whole: Axes, grid: Grid, x: np.ndarray, z: np.ndarray, diameter: float, colour: str
+    axes: Axes, grid: Grid, x: np.ndarray, z: np.ndarray, diameter: float, colour: str, shown: tuple[int, int]
 ) -> None:
-    columns, rows = min(CORNER_COLUMNS, grid.columns), min(CORNER_ROWS, grid.rows)
+    columns, rows = shown
     width, height = columns * grid.cell_width_m, rows * grid.cell_height_m
     near = (x < width + diameter) & (z < height + diameter)
     draw_particles(axes, x[near], z[near], diameter, facecolors=colour, edgecolors="white", linewidths=0.15)
@@ -126,10 +161,9 @@ def _draw_corner(
                 x_m, z_m, str(row * grid.columns + column), ha="center", va="center", fontsize=6,
                 bbox={"facecolor": "white", "edgecolor": "none", "alpha": 0.85, "pad": 0.6},
             )  # fmt: skip
-    axes.set(xlim=(0, width), ylim=(0, height), xlabel="x [m]")
+    axes.set(xlim=(0, width), ylim=(0, height), anchor="S")
     axes.set_xticks([0, width], ["0", f"{width:.3g}"])
     close_frame(axes, open_top=False)
-    whole.add_patch(Rectangle((0, 0), width, height, fill=False, edgecolor="black", linewidth=1.2, zorder=5))
 
 
 if rule := globals().get("snakemake"):

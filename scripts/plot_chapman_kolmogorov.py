@@ -14,7 +14,8 @@ from matplotlib.patches import Patch
 from matplotlib.ticker import FuncFormatter, MaxNLocator
 
 from bedchain.errors import UserError, make_again
-from bedchain.figures.style import DOUBLE_COLUMN_IN, FigureFiles, figure_style
+from bedchain.figures.model_styles import label
+from bedchain.figures.style import DOUBLE_COLUMN_IN, FigureFiles, figure_style, footnote
 from bedchain.files import write_csv
 from bedchain.stage import run_stage
 
@@ -65,16 +66,19 @@ def plot_chapman_kolmogorov(diagnostics: Path, files: FigureFiles, colours: dict
                 of_group = table[table["part"] == group]
                 _draw_dem(axes, of_group[of_group["source"] == "dem"], colours["dem"])
                 _draw_chains(axes, of_group[of_group["source"] == model], lags, colours[model])
-            row[0].set_ylabel(f"{model} chain\nshare still on its side [1]")
+            row[0].set_ylabel(f"{label(model)}\nshare still on its side [1]")
         for axes, name in zip(panels[0], GROUPS.values(), strict=True):
             axes.set_title(name, loc="left")
         for axes in panels[-1]:
             axes.set_xlabel("time [s]")
             axes.xaxis.set_major_formatter(FuncFormatter(lambda value, _: f"{value:g}"))
-            axes.xaxis.set_major_locator(MaxNLocator(2))
+            axes.xaxis.set_major_locator(MaxNLocator(4, steps=[1, 2, 5, 10]))
         panels[0, 0].set_xlim(0, table["time_s"].max())
         panels[0, 0].set_ylim(None, 1.03)
-        _legend(figure, lags, colours)
+        banded = table.loc[table["source"] == "dem", "ci_low"].notna().any()
+        _legend(figure, lags, colours, bool(banded))
+        if absent := missing_lags(table, models, lags):
+            footnote(figure, absent)
         files.save(figure)
     columns = ["source", "lag_s", "time_s", "part", "value", "ci_low", "ci_high"]
     names = {
@@ -84,6 +88,17 @@ def plot_chapman_kolmogorov(diagnostics: Path, files: FigureFiles, colours: dict
         "ci_high": "band_high_1",
     }
     write_csv(table[columns].rename(columns=names), files.csv)
+
+
+def missing_lags(table: pd.DataFrame, models: list[str], lags: list[float]) -> str:
+    """A sentence for each model that was not learned at some of the lags."""
+    by_model = {model: {*table.loc[table["source"] == model, "lag_s"]} for model in models}
+    absent = {model: [f"{lag:g}" for lag in lags if lag not in has] for model, has in by_model.items()}
+    return " ".join(
+        f"{label(model).capitalize()}: not learned at {' and '.join(which)} s, too many states."
+        for model, which in absent.items()
+        if which
+    )
 
 
 def _draw_dem(axes: Axes, curve: pd.DataFrame, colour: str) -> None:
@@ -100,15 +115,15 @@ def _draw_chains(axes: Axes, table: pd.DataFrame, lags: list[float], colour: str
     for lag, (dash, marker) in zip(lags, STYLES, strict=False):
         curve = table[table["lag_s"] == lag].sort_values("time_s")
         axes.plot(curve["time_s"], curve["value"], color=colour, linestyle=dash, marker=marker, ms=3.4,
-                  mfc="white", mew=0.9, clip_on=False)  # fmt: skip
+                  mfc="white", mew=0.9, zorder=3)  # fmt: skip
 
 
-def _legend(figure: Figure, lags: list[float], colours: dict[str, str]) -> None:
+def _legend(figure: Figure, lags: list[float], colours: dict[str, str], banded: bool) -> None:
     handles: list[Artist] = [
         Line2D([], [], color=colours["dem"], lw=1.6),
         Patch(color=BAND_COLOUR, alpha=BAND_OPACITY, lw=0),
     ]
-    labels = ["DEM", "its 95 % band"]
+    labels = ["DEM", "its 95 % band"] if banded else ["DEM", "its band unknown: window too short"]
     for lag, (dash, marker) in zip(lags, STYLES, strict=False):
         handles.append(
             Line2D([], [], color="#444444", linestyle=dash, marker=marker, ms=3.4, mfc="white", mew=0.9)

@@ -1,33 +1,46 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Fig. 2: seconds of computing to advance the comparison window, by the DEM and by each chain."""
 
+import json
 from pathlib import Path
 
 import pandas as pd
 from matplotlib import pyplot as plt
 from matplotlib.axes import Axes
+from matplotlib.lines import Line2D
 
 from bedchain.errors import UserError
-from bedchain.figures.style import DOUBLE_COLUMN_IN, FigureFiles, figure_style
+from bedchain.figures.model_styles import label as model_label
+from bedchain.figures.style import DOUBLE_COLUMN_IN, FigureFiles, figure_style, footnote
 from bedchain.files import write_csv
 from bedchain.stage import run_stage
+from bedchain.trajectory.store import read_manifest
 
+# label, marker, filled
 KINDS = {
-    "simulate": ("{model}: simulate", "s", True),
-    "learn": ("{model} chain: learn", "s", False),
+    "simulate": ("simulate", "s", True),
+    "learn": ("learn from the DEM", "s", False),
     "exact": ("advance, exact expectation", "o", True),
     "monte_carlo": ("advance, Monte Carlo", "D", False),
 }
 ROW_IN = 0.21
+# of the axis, right of the DEM, for the text beside the slowest chain
+ROOM = 4.0
 
 
-def plot_cost(timing: Path, files: FigureFiles, colour: str, window_s: float) -> None:
+def plot_cost(
+    timing: Path, dem: Path, provenance: list[Path], files: FigureFiles, colour: str, window_s: float
+) -> None:
     """Draw what each model costs, on a logarithmic axis, with the ratios to the DEM.
 
     Parameters
     ----------
     timing : Path
         ``timing.csv`` of time_models.
+    dem : Path
+        ``dem.json``, for the cores of the DEM.
+    provenance : list of Path
+        ``provenance.json`` of the results, and last of the archive that the DEM is from, if any.
     files : FigureFiles
         Figure in two forms, and the numbers behind it.
     colour : str
@@ -37,9 +50,11 @@ def plot_cost(timing: Path, files: FigureFiles, colour: str, window_s: float) ->
     """
     table = cost_table(pd.read_csv(timing))
     with figure_style():
-        figure, axes = plt.subplots(figsize=(DOUBLE_COLUMN_IN, 0.7 + ROW_IN * len(table)))
+        figure, axes = plt.subplots(figsize=(DOUBLE_COLUMN_IN, 1.2 + ROW_IN * len(table)))
         _draw(axes, table, colour)
         axes.set_xlabel(f"wall time for {window_s:g} s of bed [s]")
+        figure.legend(handles=_legend(colour), loc="outside upper center", ncols=len(KINDS))
+        footnote(figure, where_it_ran(read_manifest(dem)["ranks"], provenance))
         files.save(figure)
     write_csv(table, files.csv)
 
@@ -79,15 +94,30 @@ def cost_table(timing: pd.DataFrame) -> pd.DataFrame:
     return table
 
 
+def where_it_ran(ranks: int, provenance: list[Path]) -> str:
+    """Cores and processors of the DEM and of the chains, in words."""
+    chains, *archive = [json.loads(file.read_text(encoding="utf-8"))["machine"] for file in provenance]
+    dem = (archive or [chains])[-1]
+    cores = "one core" if ranks == 1 else f"{ranks} cores"
+    return f"DEM: {cores} of {dem['processor']}. Chains: one core of {chains['processor']}."
+
+
+def _legend(colour: str) -> list[Line2D]:
+    return [
+        Line2D([], [], label=name, marker=marker, ls="none", color=colour, mfc=colour if filled else "white")
+        for name, marker, filled in KINDS.values()
+    ]
+
+
 def _draw(axes: Axes, table: pd.DataFrame, colour: str) -> None:
     dem = table.loc[table["kind"] == "simulate", "wall_s"].item()
     place = 0.0
     places, labels = [], []
     for row in table.itertuples():
-        label, marker, filled = KINDS[str(row.kind)]
+        _, marker, filled = KINDS[str(row.kind)]
         place -= 1.5 if row.kind == "learn" else 1.0
         places.append(place)
-        labels.append(label.format(model="DEM" if row.model == "dem" else row.model))
+        labels.append({"simulate": "DEM", "learn": model_label(str(row.model))}.get(str(row.kind), ""))
         axes.scatter(
             row.wall_s, place, marker=marker, s=26, zorder=3, facecolors=colour if filled else "white",
             edgecolors=colour, linewidths=1.1,
@@ -105,7 +135,7 @@ def _draw(axes: Axes, table: pd.DataFrame, colour: str) -> None:
     axes.set_xscale("log")
     axes.set_yticks(places, labels)
     axes.set_ylim(place - 0.8, -0.2)
-    axes.set_xlim(table["wall_s"].min() / 2, dem * 2)
+    axes.set_xlim(table["wall_s"].min() / 2, max(2 * dem, ROOM * table["wall_s"].max()))
     axes.tick_params(axis="y", length=0)
     axes.spines["left"].set_visible(False)
     axes.grid(axis="x", color="#e2e2e2", linewidth=0.5)

@@ -5,33 +5,23 @@ from pathlib import Path
 
 import numpy as np
 import pandas as pd
-from matplotlib import pyplot as plt
 from matplotlib.colors import PowerNorm
 
-from bedchain.figures.style import (
-    DOUBLE_COLUMN_IN,
-    FigureFiles,
-    close_frame,
-    draw_cells,
-    figure_style,
-    map_colours,
-    shown_height,
-)
+from bedchain.figures.maps import cell_columns, height_to_show, map_panels, projection_note
+from bedchain.figures.model_styles import label
+from bedchain.figures.style import FigureFiles, draw_cells, figure_style, footnote, map_colours
 from bedchain.files import write_csv
-from bedchain.measures.batch import observed_shares, total_variation
+from bedchain.measures.batch import batch_of, observed_shares, total_variation
 from bedchain.stage import LOG, run_stage
-from bedchain.trajectory.cell_store import open_cells
-from bedchain.trajectory.grid import Grid
+from bedchain.trajectory.cell_store import CellStore, frame_at, open_cells
 
 # the square root shows the thin parts of the batch beside its dense rest
 GAMMA = 0.5
-# colours end where all but this share of the particles in the cells of all moments are below
-TOP_SHARE = 0.01
-# less than this share of the batch in all rows above is not worth the room
-NOT_SHOWN = 1e-3
-# room for labels and the colour bar beside and above the maps, and between two of them
-BESIDE_IN, ABOVE_IN, BETWEEN_IN = 1.45, 1.12, 0.18
-TALLEST_IN = 3.4
+# colours end where all but this share of the DEM's occupied cells of all moments are below
+TOP_SHARE = 0.02
+NOTE = """Above each map of the chain: share of the batch that would have to change cells to turn the DEM's
+map into the chain's (total variation); in brackets, the same for as many particles as the batch drawn from
+the chain itself. Cells with less than one particle's share, {least:.2g} %, are white."""
 
 
 def plot_distribution(
@@ -69,97 +59,49 @@ def plot_distribution(
         [100 * total_variation(*pair) for pair in zip(shares, expected, strict=True)]
         for shares in (observed, drawn)
     )
-    notes = [f"differs {one:.0f} %\n(chance {two:.0f} %)" for one, two in zip(by_dem, by_chance, strict=True)]
     LOG.info(
-        "total variation of the %s chain from the DEM at %s s: %s",
-        model,
-        moments,
-        "; ".join(notes).replace("\n", " "),
-    )
+        "total variation of the %s chain from the DEM at %s s: %s %%; of particles drawn from it: %s %%",
+        model, moments, np.round(by_dem), np.round(by_chance),
+    )  # fmt: skip
+    notes = [f"{dem:.0f} % ({chance:.0f} %)" for dem, chance in zip(by_dem, by_chance, strict=True)]
+    start = np.asarray(store.cells[frame_at(store.times_s, start_s)])
+    least = 1 / batch_of(store.grid, start, batch_height_m).sum()
     with figure_style():
-        draw_moments(store.grid, moments, observed, expected, notes, model, colour_map, files)
-    write_csv(distribution_table(store.grid, moments, {"dem": observed, model: expected}), files.csv)
+        height = height_to_show(store, moments, start_s)
+        draw_moments(
+            store, moments, np.array([observed, expected]), height, least, notes, model, colour_map, files
+        )
+    sources = {"dem": observed, model: expected}
+    write_csv(pd.concat([shares_of(store, moments, *source) for source in sources.items()]), files.csv)
 
 
 def draw_moments(
-    grid: Grid, moments: np.ndarray, observed: np.ndarray, expected: np.ndarray, notes: list[str],
-    model: str, colour_map: str, files: FigureFiles
+    store: CellStore, moments: np.ndarray, shares: np.ndarray, height: float, least: float,
+    notes: list[str], model: str, colour_map: str, files: FigureFiles,
 ) -> None:  # fmt: skip
     """Two rows of maps, the DEM above the chain, one column a moment, with one colour bar for all."""
-    both = 100 * grid.projected(np.array([observed, expected]))
-    (across, up), grid = grid.labels, grid.shown
-    norm = PowerNorm(GAMMA, 0, np.quantile(both[both > 0], 1 - TOP_SHARE))
-    height = _height_to_show(both, grid)
-    panel_in = (DOUBLE_COLUMN_IN - BESIDE_IN) / len(moments) - BETWEEN_IN
-    tall = min(height / grid.width_m * panel_in, TALLEST_IN)
-    figure, panels = plt.subplots(
-        2,
-        len(moments),
-        figsize=(DOUBLE_COLUMN_IN, 2 * tall + ABOVE_IN),
-        sharex=True,
-        sharey=True,
-        squeeze=False,
-    )
-    for column, moment in enumerate(moments):
-        for row in (0, 1):
-            axes = panels[row, column]
-            mesh = draw_cells(axes, both[row, column], grid, norm, map_colours(colour_map))
-            axes.set(xlim=(0, grid.width_m), ylim=(0, height), xticks=[0, grid.width_m])
-            close_frame(axes)
-        panels[0, column].set_title(f"{moment:.2f} s")
-        panels[1, column].set_title(notes[column], fontsize=6, pad=3)
-        panels[1, column].set_xticklabels(["0", f"{grid.width_m:g}"])
-    for axes, name in zip(panels[:, 0], ("DEM", f"{model} chain"), strict=True):
-        axes.set_ylabel(f"{name}\n{up}")
-    figure.supxlabel(across, fontsize=8)
+    grid, shares = store.grid.shown, store.grid.projected(shares)
+    norm = PowerNorm(GAMMA, 0, 100 * np.quantile(shares[0][shares[0] > 0], 1 - TOP_SHARE))
+    figure, panels = map_panels(store.grid, moments, 2, height)
+    for row, name, of_row in zip(panels, ("DEM", label(model)), shares, strict=True):
+        for axes, values in zip(row, of_row, strict=True):
+            seen = np.where(values > 0.999 * least, 100 * values, 0)
+            mesh = draw_cells(axes, seen, grid, norm, map_colours(colour_map))
+        row[0].set_ylabel(f"{name}\n{store.grid.labels[1]}")
+    for axes, note in zip(panels[1], notes, strict=True):
+        axes.set_title(note, fontsize=7, pad=3)
     bar = figure.colorbar(mesh, ax=panels, extend="max", aspect=35, shrink=0.9, pad=0.015)
-    bar.set_label("share of the batch in a cell [%]")
+    bar.set_label("share of the batch in a cell [%],\nsquare-root scale")
     bar.outline.set_linewidth(0.5)
+    footnote(figure, f"{NOTE.format(least=100 * least)} {projection_note(store.grid)}")
     files.save(figure)
 
 
-def _height_to_show(shares: np.ndarray, grid: Grid) -> float:
-    """Height above which there is next to nothing in any map [m]."""
-    by_row = shares.reshape(-1, grid.rows, grid.columns).sum(axis=2) / 100
-    above = by_row[:, ::-1].cumsum(axis=1)[:, ::-1].max(axis=0)
-    occupied = np.flatnonzero(above > NOT_SHOWN)
-    return shown_height(occupied * grid.columns, grid)
-
-
-def distribution_table(grid: Grid, moments: np.ndarray, sources: dict[str, np.ndarray]) -> pd.DataFrame:
-    """Shares by moment, source and cell, in long form.
-
-    Parameters
-    ----------
-    grid : Grid
-    moments : (n_moments,) ndarray
-        After the start [s].
-    sources : dict of str to (n_moments, n_cells) ndarray
-        Shares of the batch [1].
-
-    Returns
-    -------
-    DataFrame
-        time_s, source, cell, column, row, x_m, z_m (centres), share_1.
-    """
-    number = np.arange(grid.n_cells)
-    parts = [
-        pd.DataFrame(
-            {
-                "time_s": moment,
-                "source": source,
-                "cell": number,
-                "column": grid.indices(number)[0],
-                "row": grid.indices(number)[1],
-                "x_m": grid.centres_m[:, 0],
-                "z_m": grid.centres_m[:, 1],
-                "share_1": share,
-            }
-        )
-        for source, shares in sources.items()
-        for moment, share in zip(moments, shares, strict=True)
-    ]
-    return pd.concat(parts, ignore_index=True)
+def shares_of(store: CellStore, moments: np.ndarray, source: str, shares: np.ndarray) -> pd.DataFrame:
+    """Shares of the batch by moment and cell: time_s, source, cell, column, row, x_m, z_m, share_1."""
+    table = cell_columns(store.grid, moments).assign(share_1=shares.ravel())
+    table.insert(1, "source", source)
+    return table
 
 
 if rule := globals().get("snakemake"):

@@ -1,16 +1,18 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Fig. 5: the share of each marked group that is still on its side, by the DEM and by the chains."""
 
+import math
 import re
 from pathlib import Path
 
 import pandas as pd
 from matplotlib import pyplot as plt
+from matplotlib.artist import Artist
 from matplotlib.axes import Axes
-from matplotlib.patches import Patch
 
 from bedchain.comparison.curves import ChainFiles
 from bedchain.errors import UserError, make_again
+from bedchain.figures.model_styles import ModelStyle, label, model_styles
 from bedchain.figures.style import DOUBLE_COLUMN_IN, FigureFiles, figure_style
 from bedchain.files import CSV_DIGITS, read_arrays, write_csv
 from bedchain.stage import run_stage
@@ -22,11 +24,13 @@ PANELS = {
 }
 MONTE_CARLO = "_monte_carlo"
 REALISATION = r"dem(_\d+)?"
-DASHES = {"static": (0, (4, 1.5)), "dynamic": (0, (1.2, 1.2))}
-MARKERS = {"static": "o", "dynamic": "^"}
 MARKS_PER_CURVE = 14
 BAND_OPACITY = 0.2
+RUNS_COLOUR, RUNS_EDGE = "#d4d4d4", "#9a9a9a"
 MIXED_COLOUR = "#888888"
+LEGEND_COLUMNS = 4
+# a key of a legend: what is drawn above it
+Entries = dict[str, tuple[Artist, ...]]
 
 
 def plot_mixing(
@@ -46,7 +50,7 @@ def plot_mixing(
     direction : {"radial", "axial"}
         Left and right (Fig. 5a), or low and up (Fig. 5b).
     colours : dict of str to str
-        Colours of ``dem`` and of each model.
+        Colours of ``dem`` and of models; those without one get that of `model_styles`.
 
     Raises
     ------
@@ -59,20 +63,26 @@ def plot_mixing(
     table = table.merge(bands(chains.by_model()), how="left", on=["time_s", "source", "group"])
     table = with_realisations(table)
     shares, mixed = (_shares(pd.read_csv(metrics), when) for when in ("start", "mean"))
+    styles = {
+        model: style._replace(colour=colours.get(model, style.colour))
+        for model, style in model_styles(chains.models).items()
+    }
     with figure_style():
-        figure, panels = plt.subplots(1, 2, figsize=(DOUBLE_COLUMN_IN, 2.8), sharex=True, sharey=True)
+        figure, panels = plt.subplots(1, 2, figsize=(DOUBLE_COLUMN_IN, 3.0), sharex=True, sharey=True)
         for axes, (group, name) in zip(panels, PANELS[direction].items(), strict=True):
-            _draw_group(axes, table[table["group"] == group], colours, mixed[group])
+            entries = _draw_group(axes, table[table["group"] == group], colours["dem"], styles, mixed[group])
             axes.set_title(f"{name}: {100 * shares[group]:.0f} % of the particles at the start", loc="left")
             axes.set_xlabel("time [s]")
         panels[0].set_ylabel("share still on its side [1]")
-        lowest = min(table["fraction_remaining_1"].min(), *(mixed[group] for group in PANELS[direction]))
-        panels[0].set_ylim(max(0.0, lowest - 0.06), 1.03)
+        shown = table[["fraction_remaining_1", "band_low_1"]].min().min()
+        lowest = min(shown, *(mixed[group] for group in PANELS[direction]))
+        panels[0].set_ylim(max(0.0, lowest - 0.03), 1.03)
         panels[0].set_xlim(table["time_s"].min(), table["time_s"].max())
-        handles, labels = panels[0].get_legend_handles_labels()
-        handles.append(Patch(color=colours[chains.models[0]], alpha=BAND_OPACITY, linewidth=0))
-        labels.append("95 % band of the chain")
-        figure.legend(handles, labels, loc="outside upper center", ncols=4, handlelength=2.4)
+        columns = math.ceil(len(entries) / math.ceil(len(entries) / LEGEND_COLUMNS))
+        figure.legend(
+            entries.values(), entries.keys(), loc="outside upper center", ncols=columns, handlelength=2.6,
+            columnspacing=1.4,
+        )  # fmt: skip
         files.save(figure)
     write_csv(table, files.csv)
 
@@ -133,41 +143,50 @@ def with_realisations(table: pd.DataFrame) -> pd.DataFrame:
     return table
 
 
-def _draw_group(axes: Axes, table: pd.DataFrame, colours: dict[str, str], mixed: float) -> None:
-    axes.axhline(mixed, color=MIXED_COLOUR, linewidth=0.8, linestyle=(0, (6, 2, 1, 2)), label="well mixed")
-    repeats = {name for name in table["source"] if re.fullmatch(REALISATION, name)} - {"dem"}
-    for source, curve in table.groupby("source", sort=False):
-        model = str(source).removesuffix(MONTE_CARLO)
-        if source == "dem":
-            if curve["band_low_1"].notna().all():
-                label = f"DEM, lowest to highest of {len(repeats) + 1} runs"
-                axes.fill_between(
-                    curve["time_s"], curve["band_low_1"], curve["band_high_1"], color=colours["dem"],
-                    alpha=BAND_OPACITY, linewidth=0, label=label,
-                )  # fmt: skip
-            axes.plot(
-                curve["time_s"], curve["fraction_remaining_1"], color=colours["dem"], lw=1.6, label="DEM"
-            )
-        elif model in repeats:
-            continue
-        elif str(source).endswith(MONTE_CARLO):
-            every = max(1, len(curve) // MARKS_PER_CURVE)
-            axes.plot(
-                curve["time_s"], curve["fraction_remaining_1"], MARKERS.get(model, "o"),
-                markevery=every, ms=3.2,
-                color=colours[model], mfc="white", mew=0.9, label=f"{model}, Monte Carlo", clip_on=False,
-            )  # fmt: skip
-        else:
-            axes.fill_between(
-                curve["time_s"], curve["band_low_1"], curve["band_high_1"], color=colours[model],
-                alpha=BAND_OPACITY, linewidth=0,
-            )  # fmt: skip
-            axes.plot(
-                curve["time_s"], curve["fraction_remaining_1"], color=colours[model],
-                linestyle=DASHES.get(model, "--"), label=f"{model} chain",
-            )  # fmt: skip
+def _draw_group(
+    axes: Axes, table: pd.DataFrame, dem_colour: str, styles: dict[str, ModelStyle], mixed: float
+) -> Entries:
+    """Draw one group; what its legend says, by label."""
     axes.grid(axis="y", color="#e2e2e2", linewidth=0.5)
     axes.set_axisbelow(True)
+    curves = {str(source): rows.sort_values("time_s") for source, rows in table.groupby("source", sort=False)}
+    entries = _draw_dem(axes, curves, dem_colour)
+    for source, curve in curves.items():
+        model = source.removesuffix(MONTE_CARLO)
+        if model not in styles:
+            continue
+        style, time, share = styles[model], curve["time_s"], curve["fraction_remaining_1"]
+        if source != model:
+            every = max(1, len(curve) // MARKS_PER_CURVE)
+            entries[f"{label(model)}, Monte Carlo"] = (
+                *axes.plot(time, share, style.marker, markevery=every, ms=3.2, color=style.colour,
+                           mfc="white", mew=0.9, clip_on=False),
+            )  # fmt: skip
+            continue
+        line = axes.plot(time, share, color=style.colour, linestyle=style.dash)
+        if curve["band_low_1"].notna().any():
+            band_ends = curve["band_low_1"], curve["band_high_1"]
+            area = axes.fill_between(time, *band_ends, color=style.colour, alpha=BAND_OPACITY, linewidth=0)
+            entries[f"{label(model)}, 95 % band"] = (area, *line)
+        else:
+            entries[f"{label(model)}, band unknown: window too short"] = (*line,)
+    line = [axes.axhline(mixed, color=MIXED_COLOUR, linewidth=0.8, linestyle=(0, (6, 2, 1, 2)))]
+    return entries | {"well mixed": (*line,)}
+
+
+def _draw_dem(axes: Axes, curves: dict[str, pd.DataFrame], colour: str) -> Entries:
+    """The main run of the DEM above the range of all its runs."""
+    dem = curves["dem"]
+    entries: Entries = {}
+    n_runs = sum(bool(re.fullmatch(REALISATION, source)) for source in curves)
+    if n_runs > 1:
+        area = axes.fill_between(
+            dem["time_s"], dem["band_low_1"], dem["band_high_1"], facecolor=RUNS_COLOUR, edgecolor=RUNS_EDGE,
+            linewidth=0.5, zorder=1,
+        )  # fmt: skip
+        entries[f"{n_runs} DEM runs, lowest to highest"] = (area,)
+    line = axes.plot(dem["time_s"], dem["fraction_remaining_1"], color=colour, lw=1.6)
+    return {"DEM, this run" if n_runs > 1 else "DEM": (*line,)} | entries
 
 
 def _shares(metrics: pd.DataFrame, when: str) -> dict[str, float]:

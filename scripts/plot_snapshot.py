@@ -14,7 +14,13 @@ from matplotlib.cm import ScalarMappable
 from matplotlib.colors import Normalize
 
 from bedchain.dem.gas_field import GasField, gas_near
-from bedchain.figures.style import SINGLE_COLUMN_IN, FigureFiles, close_frame, figure_style
+from bedchain.figures.style import (
+    MOST_SLENDER,
+    SINGLE_COLUMN_IN,
+    FigureFiles,
+    close_frame,
+    figure_style,
+)
 from bedchain.files import write_csv
 from bedchain.stage import LOG, run_stage
 from bedchain.trajectory.cell_store import frame_at
@@ -33,6 +39,8 @@ if (dist > 1.0) discard;
 if (dist > 0.7) { ambientColor *= 0.75; diffuseColor *= 0.75; }
 """
 TALLEST_IN = 5.0
+# a narrower picture has no room for two numbers below it
+NARROWEST_IN = 0.7
 
 
 def plot_snapshot(
@@ -59,7 +67,7 @@ def plot_snapshot(
     frame = np.asarray(values[frame_at(np.array(described["times_s"]), gas.time_s)], float)
     LOG.info("particles and gas at %g s", gas.time_s)
     width = described["width_m"]
-    height = min((1 + FREEBOARD) * frame[1].max(), described["height_m"])
+    height = min((1 + FREEBOARD) * frame[1].max(), described["height_m"], MOST_SLENDER * width)
     speed = np.quantile(np.abs(frame[3]), 1 - FAST_SHARE)
     norms = Normalize(-speed, speed), Normalize(gas.values.min(), 1.0)
     images = (
@@ -133,13 +141,16 @@ def _panel(
     axes: Axes, image: np.ndarray, size_m: tuple[float, float], norm: Normalize, colours: str, label: str
 ) -> None:
     axes.imshow(image, extent=(0, size_m[0], 0, size_m[1]), interpolation="antialiased")
-    axes.set(xticks=[0, size_m[0]], xlabel="x [m]", xlim=(0, size_m[0]), ylim=(0, size_m[1]))
+    axes.set(xlabel="x [m]", xlim=(0, size_m[0]), ylim=(0, size_m[1]))
+    ends = [0, size_m[0]] if TALLEST_IN * size_m[0] / size_m[1] > NARROWEST_IN else [size_m[0]]
+    axes.set_xticks(ends, [f"{end:g}" for end in ends])
     close_frame(axes)
     bar = axes.figure.colorbar(
         ScalarMappable(norm, colours), ax=axes, orientation="horizontal", shrink=0.9, aspect=14, pad=0.02,
         extend="both" if norm.vmin is not None and norm.vmin < 0 else "neither",
     )  # fmt: skip
     bar.set_label(label)
+    bar.ax.locator_params(nbins=3)
     bar.outline.set_linewidth(0.5)
 
 

@@ -9,7 +9,7 @@ from matplotlib import pyplot as plt
 from matplotlib.axes import Axes
 
 from bedchain.dem.series import read_series
-from bedchain.figures.style import DOUBLE_COLUMN_IN, FigureFiles, figure_style
+from bedchain.figures.style import DOUBLE_COLUMN_IN, FigureFiles, figure_style, footnote
 from bedchain.files import write_csv
 from bedchain.measures.mixing import Splits
 from bedchain.measures.voidage import Slab, voidage_profiles
@@ -27,6 +27,9 @@ TITLES = {
 }
 LINE_COLOUR, HALF_COLOURS = "#222222", ("#4477aa", "#ee6677")
 TREND_COLOUR = "#ee6677"
+NOTE = """Red: straight line through the series; its change over the window, with a 95 % interval, is the
+drift, in percent of the mean. Rows of voidage: one interval for all of them together. Squares, if any: rows
+that drift."""
 
 
 def plot_stationarity(
@@ -81,7 +84,7 @@ def plot_stationarity(
         ]
     )
     with figure_style():
-        figure = plt.figure(figsize=(DOUBLE_COLUMN_IN, 3.6))
+        figure = plt.figure(figsize=(DOUBLE_COLUMN_IN, 3.8))
         grid = figure.add_gridspec(2, 3, width_ratios=(1, 1, 0.9))
         for at, name in enumerate(seen):
             axes = figure.add_subplot(grid[at // 2, at % 2])
@@ -89,6 +92,7 @@ def plot_stationarity(
             if at >= len(seen) - 2:  # nothing is below it
                 axes.set_xlabel("time [s]")
         _draw_profile(figure.add_subplot(grid[:, 2]), profile, middles, table)
+        footnote(figure, NOTE)
         files.save(figure)
     write_csv(table, stationarity)
     write_csv(shown, files.csv)
@@ -99,18 +103,24 @@ def plot_stationarity(
 
 
 def _draw_series(axes: Axes, series: pd.DataFrame, table: pd.DataFrame, name: str) -> None:
-    """A series with the straight line through it; the title says its change and interval."""
+    """A series with the straight line through it; the title says what its interval allows."""
     row = table[table["quantity"] == name].iloc[0]
     ends = series["time_s"].iloc[[0, -1]]
     axes.plot(series["time_s"], series["value"], color=LINE_COLOUR, lw=0.6)
     line = [row["mean"] - row["drift"] / 2, row["mean"] + row["drift"] / 2]
     axes.plot(ends, line, color=TREND_COLOUR, lw=1.6)
-    verdict = "steady" if row["stationary_1"] else "drifts"
-    share = [100 * row[key] / row["mean"] for key in ("drift", "ci_low", "ci_high")]
-    axes.set_title(
-        f"{TITLES[name]}\n{share[0]:+.1f} % ({share[1]:+.1f} to {share[2]:+.1f} %): {verdict}", loc="left"
-    )
+    axes.set_title(f"{TITLES[name]}\n{verdict(row)}", loc="left")
     axes.set_xlim(*ends)
+
+
+def verdict(row: pd.Series) -> str:
+    """What the interval of a drift says, as shares of the mean."""
+    ends = [100 * row[key] / abs(row["mean"]) for key in ("ci_low", "ci_high")]
+    if not np.isfinite(ends).all():
+        return "drift unknown: window too short"
+    if row["stationary_1"]:
+        return f"no drift seen, at most {max(map(abs, ends)):.2g} %"
+    return f"drifts by {ends[0]:+.2g} to {ends[1]:+.2g} %"
 
 
 def _draw_profile(axes: Axes, profile: np.ndarray, middles: np.ndarray, table: pd.DataFrame) -> None:
@@ -130,9 +140,14 @@ def _draw_profile(axes: Axes, profile: np.ndarray, middles: np.ndarray, table: p
         axes.plot(
             off["mean"], off["height_m"], "s", ms=3, mfc="none", color=LINE_COLOUR, label="row that drifts"
         )
-    axes.set(xlabel="voidage [1]", ylabel="z [m]", ylim=(0, 1.1 * rows["height_m"].max()))
-    axes.set_title(f"{len(off)} of {len(rows)} rows drift", loc="left")
-    axes.legend(loc="upper left")
+    axes.set(xlabel="voidage [1]", ylabel="z [m]", ylim=(0, 1.02 * rows["height_m"].max()))
+    unknown = int(rows["ci_low"].isna().sum())
+    named = f"drift seen in {len(off) or 'none'} of {len(rows) - unknown} rows"
+    axes.set_title(
+        f"voidage by height\n{named if unknown < len(rows) else 'drift unknown: window too short'}",
+        loc="left",
+    )
+    axes.legend(loc="best")
 
 
 if rule := globals().get("snakemake"):

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Implied timescales of the chains over the lag: level where a chain is Markov, unseen below the lag."""
+"""Implied timescales of the chains by lag: level where a chain is Markov, not resolved below the lag."""
 
 from pathlib import Path
 from typing import Any
@@ -7,21 +7,27 @@ from typing import Any
 import numpy as np
 import pandas as pd
 from matplotlib import pyplot as plt
+from matplotlib.artist import Artist
 from matplotlib.axes import Axes
 from matplotlib.lines import Line2D
+from matplotlib.patches import Patch
 from matplotlib.ticker import FuncFormatter, NullFormatter
 
 from bedchain.errors import UserError, make_again
-from bedchain.figures.style import DOUBLE_COLUMN_IN, LINE_COLOUR, FigureFiles, figure_style
+from bedchain.figures.model_styles import label
+from bedchain.figures.style import DOUBLE_COLUMN_IN, LINE_COLOUR, FigureFiles, figure_style, footnote
 from bedchain.files import write_csv
 from bedchain.stage import run_stage
 
 # a pair of complex eigenvalues has one timescale; the same number twice up to the digits of the table
 PAIR = 1e-6
 PROCESSES = 3
-MARKERS, DASHES = ("o", "s", "^"), ("-", (0, (4, 1.5)), (0, (1.2, 1.2)))
+MARKERS = ("o", "s", "^")
 # error bars of processes beside each other, as a share of the lag
-SHIFT = 0.035
+SHIFT = 0.06
+NOTE = """The three slowest processes are ranked anew at each lag: marks of one rank need not be the same
+process, so no line joins them. {bands}"""
+BANDS = "Without a bar: the 95 % band was not computed, the matrix is too large to be learned many times."
 UNSEEN_COLOUR, LEGEND_COLOUR = "#d9d9d9", "#444444"
 TICKS_S = (0.01, 0.02, 0.05, 0.1, 0.2, 0.5, 1, 2, 5, 10, 20)
 
@@ -61,18 +67,15 @@ def plot_timescales(diagnostics: Path, files: FigureFiles, colours: dict[str, st
             axes.fill_between(ends, ends_s[0] * 1e-3, ends, color=UNSEEN_COLOUR, lw=0, zorder=0)
             axes.plot(ends, ends, color=LINE_COLOUR, lw=0.6, zorder=0)
             axes.set(xscale="log", yscale="log", xlim=ends, ylim=ends_s, xlabel="lag [s]")
-            axes.set_title(f"{model} chain", loc="left")
+            axes.set_title(label(model), loc="left")
             axes.set_xticks(lags, [f"{lag:g}" for lag in lags])
             axes.xaxis.set_minor_formatter(NullFormatter())
             axes.yaxis.set_major_formatter(FuncFormatter(lambda value, _: f"{value:g}"))
             axes.minorticks_off()
             axes.set_yticks([tick for tick in TICKS_S if ends_s[0] < tick < ends_s[1]])
-            axes.text(
-                ends[1] / 1.05, lags.max() / 3, "not resolved:\ntimescale < lag", ha="right", va="center",
-                fontsize=7, color="#333333",
-            )  # fmt: skip
         panels[0, 0].set_ylabel("implied timescale [s]")
-        figure.legend(handles=_legend(), loc="outside upper center", ncols=5, handlelength=2.8)
+        figure.legend(handles=_legend(), loc="outside upper center", ncols=6, handlelength=1.4)
+        footnote(figure, NOTE.format(bands=BANDS if shown["ci_low_s"].isna().any() else ""))
         files.save(figure)
     write_csv(table, files.csv)
 
@@ -107,25 +110,25 @@ def processes(table: pd.DataFrame) -> pd.DataFrame:
 
 
 def _draw_model(axes: Axes, table: pd.DataFrame, colour: str) -> None:
-    for number, (marker, dash) in enumerate(zip(MARKERS, DASHES, strict=True)):
-        found = table[table["process"] == number + 1].sort_values("lag_s")
-        lag, scale = found["lag_s"] * (1 + SHIFT * (number - 1)), found["timescale_s"]
-        axes.plot(lag, scale, color=colour, linestyle=dash, marker=marker, ms=4.5)
-        turns = found["turns"] == 1
-        axes.plot(
-            lag[turns], scale[turns], color=colour, linestyle="none", marker=marker, ms=4.5, mfc="white"
-        )
+    for number, marker in enumerate(MARKERS):
+        rows = table[table["process"] == number + 1].sort_values("lag_s")
+        lag, scale = rows["lag_s"] * (1 + SHIFT * (number - 1)), rows["timescale_s"]
         # the ends of a band need not hold the value itself: blocks that are drawn twice make a chain slower
-        axes.vlines(lag, found["ci_low_s"], found["ci_high_s"], color=colour, lw=0.8, alpha=0.8)
+        axes.vlines(lag, rows["ci_low_s"], rows["ci_high_s"], color=colour, lw=1.0)
+        for turns, face in ((0, colour), (1, "white")):
+            part = rows["turns"] == turns
+            axes.plot(lag[part], scale[part], color=colour, linestyle="none", marker=marker, ms=4.5, mfc=face)
 
 
-def _legend() -> list[Line2D]:
+def _legend() -> list[Artist]:
     names = ("slowest process", "second", "third")
-    grey: dict[str, Any] = {"color": LEGEND_COLOUR, "ms": 4.5}
-    styles = zip(names, MARKERS, DASHES, strict=True)
-    handles = [Line2D([], [], label=name, marker=marker, ls=dash, **grey) for name, marker, dash in styles]
-    handles.append(Line2D([], [], label="open: goes round", marker="o", ls="none", mfc="white", **grey))
-    return [*handles, Line2D([], [], label="95 % band", marker="|", ls="none", color=LEGEND_COLOUR, ms=9)]
+    grey: dict[str, Any] = {"color": LEGEND_COLOUR, "ms": 4.5, "ls": "none"}
+    handles: list[Artist] = [
+        Line2D([], [], label=name, marker=marker, **grey) for name, marker in zip(names, MARKERS, strict=True)
+    ]
+    handles.append(Line2D([], [], label="open: oscillates", marker="o", mfc="white", **grey))
+    handles.append(Line2D([], [], label="95 % band", marker="|", ls="none", color=LEGEND_COLOUR, ms=9))
+    return [*handles, Patch(color=UNSEEN_COLOUR, lw=0, label="not resolved: below the lag")]
 
 
 if rule := globals().get("snakemake"):

@@ -1,8 +1,15 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""What every test of a figure needs: where its files go, and that they are there and no blank page."""
+"""What tests of figures need: where their files go, that no page is blank, and that no text is hidden."""
+
+from itertools import combinations
 
 import matplotlib.image
 import pandas as pd
+from matplotlib.axis import Axis
+from matplotlib.figure import Figure
+from matplotlib.lines import Line2D
+from matplotlib.text import Text
+from matplotlib.transforms import Bbox
 
 from bedchain.figures.style import FigureFiles
 
@@ -10,11 +17,90 @@ DPI = 80
 COLOURS = {"dem": "#222222", "static": "#ee6677", "dynamic": "#4477aa"}
 # a blank page has one colour; text, axes and data of the smallest figure have far more ink
 LEAST_INK = 0.01
+# boxes of text hold some air around the letters [points]; fonts of two machines differ by less
+AIR_PT = 1.0
+
+
+class CheckedFiles(FigureFiles):
+    """Files of a figure whose layout is checked when it is saved."""
+
+    def save(self, figure):
+        """Refuse text that is cut off or overprinted; save the others."""
+        assert not (flaws := layout_flaws(figure)), "\n".join(flaws)
+        super().save(figure)
+
+
+class OnlyChecked(CheckedFiles):
+    """Files of a figure whose layout is checked, and which is not drawn: that takes most of the time."""
+
+    def save(self, figure):
+        """Refuse text that is cut off or overprinted."""
+        assert not (flaws := layout_flaws(figure)), "\n".join(flaws)
+
+
+def layout_flaws(figure: Figure) -> list[str]:
+    """Texts that leave the page, overprint each other, or are crossed by a curve, one line each."""
+    figure.draw_without_rendering()
+    air = AIR_PT * figure.dpi / 72
+    boxes = {text: text.get_window_extent() for text in _visible_texts(figure)}
+    page = figure.bbox.padded(air)
+    flaws = [
+        f"{text.get_text()!r} leaves the page"
+        for text, box in boxes.items()
+        if not (page.contains(*box.min) and page.contains(*box.max))
+    ]  # fmt: skip
+    inner = {text: box.padded(-air) for text, box in boxes.items()}
+    flaws += [
+        f"{first.get_text()!r} and {second.get_text()!r} overprint each other"
+        for first, second in combinations(inner, 2)
+        if Bbox.intersection(inner[first], inner[second]) is not None
+    ]
+    for axes in figure.axes:
+        for text in set(axes.texts) & inner.keys():
+            if text.get_bbox_patch() is None and any(_crosses(line, inner[text]) for line in axes.lines):
+                flaws.append(f"a curve crosses {text.get_text()!r}")
+        if (legend := axes.get_legend()) and any(
+            _crosses(line, legend.get_window_extent()) for line in axes.lines
+        ):
+            flaws.append("a curve crosses the legend")
+    return flaws
+
+
+def _visible_texts(figure: Figure) -> list[Text]:
+    """Texts that are drawn: ticks outside the limits of their axis are not."""
+    hidden = {
+        label
+        for axis in figure.findobj(Axis)
+        for tick in [*axis.get_major_ticks(), *axis.get_minor_ticks()]
+        for label in (tick.label1, tick.label2)
+        if not _within(tick.get_loc(), *sorted(axis.get_view_interval()))
+    }
+    return [
+        text
+        for text in figure.findobj(Text)
+        if text.get_text().strip() and _shown(text, figure) and text not in hidden
+    ]
+
+
+def _within(place: float, low: float, high: float) -> bool:
+    slack = 1e-9 * (high - low)
+    return low - slack <= place <= high + slack
+
+
+def _shown(text: Text, figure: Figure) -> bool:
+    owner = text.axes
+    return text.get_visible() and (
+        owner is None or (owner.get_visible() and (owner.axison or text in owner.texts))
+    )
+
+
+def _crosses(line: Line2D, box: Bbox) -> bool:
+    return bool(line.get_transform().transform_path(line.get_path()).intersects_bbox(box, filled=False))
 
 
 def outputs(folder, name):
     """Files of a figure."""
-    return FigureFiles(*(folder / f"{name}.{form}" for form in ("png", "pdf", "csv")), DPI)
+    return CheckedFiles(*(folder / f"{name}.{form}" for form in ("png", "pdf", "csv")), DPI)
 
 
 def assert_drawn(folder, name):

@@ -18,6 +18,7 @@ from build_transitions import build_transitions
 from diagnose_chains import diagnose_chains
 from made.drawings import COLOURS, assert_drawn, outputs
 from made.small_bed import COLUMNS, MODELS, MOMENTS, ROWS, SPLITS
+from made.small_bed import COMPARE as COMPARE_OF_BED
 from made.synthetic_bed import write_run
 from parse_dumps import parse_dumps
 from plot_chapman_kolmogorov import plot_chapman_kolmogorov
@@ -176,7 +177,8 @@ def test_a_pair_of_eigenvalues_is_one_process():
 
 
 def test_difference_figure_has_the_distance_of_each_moment(bed, tmp_path):
-    plot_difference(bed.cells, bed.chains["static"], bed.chains["dynamic"], outputs(tmp_path, "d"))
+    chains = [bed.chains[model] for model in MODELS]
+    plot_difference(bed.cells, *chains, outputs(tmp_path, "d"), COMPARE_OF_BED.start_s)
     table = assert_drawn(tmp_path, "d")
     assert len(table) == len(MOMENTS) * COLUMNS * ROWS
     for _, part in table.groupby("time_s"):

@@ -22,7 +22,7 @@ from made.small_bed import (
     SPLITS,
 )
 from plot_cells import plot_cells
-from plot_cost import plot_cost, readable_ratio, readable_seconds
+from plot_cost import cost_table, plot_cost, readable_ratio, readable_seconds, where_it_ran
 from plot_distribution import plot_distribution
 from plot_mixing import plot_mixing
 from time_models import dem_row, time_models
@@ -100,7 +100,9 @@ def test_dem_time_of_a_window_counts_parts_of_segments(bed):
 
 
 def test_fig2_has_the_ratios_to_the_dem(timing, bed, tmp_path):
-    plot_cost(bed.timing, outputs(tmp_path, "fig2"), "#4477aa", 1.0)
+    where = tmp_path / "provenance.json"
+    where.write_text('{"machine": {"processor": "a processor"}}')
+    plot_cost(bed.timing, bed.dem, [where], outputs(tmp_path, "fig2"), "#4477aa", 1.0)
     table = assert_drawn(tmp_path, "fig2").set_index(["model", "kind"])
     wall = timing.set_index("stage")["wall_s"]
     assert table.loc[("static", "exact"), "dem_over_this_1"] == pytest.approx(
@@ -111,10 +113,17 @@ def test_fig2_has_the_ratios_to_the_dem(timing, bed, tmp_path):
     )
 
 
-def test_fig2_without_the_dem_is_refused(timing, tmp_path):
-    timing[timing["stage"] != "dem"].to_csv(tmp_path / "t.csv", index=False)
+def test_fig2_says_where_it_ran(tmp_path):
+    here, archive = tmp_path / "here.json", tmp_path / "archive.json"
+    here.write_text('{"machine": {"processor": "fast"}}')
+    archive.write_text('{"machine": {"processor": "slow"}}')
+    assert where_it_ran(1, [here]) == "DEM: one core of fast. Chains: one core of fast."
+    assert where_it_ran(2, [here, archive]) == "DEM: 2 cores of slow. Chains: one core of fast."
+
+
+def test_fig2_without_the_dem_is_refused(timing):
     with pytest.raises(UserError, match="no stage 'dem'"):
-        plot_cost(tmp_path / "t.csv", outputs(tmp_path, "fig2"), "#4477aa", 1.0)
+        cost_table(timing[timing["stage"] != "dem"])
 
 
 @pytest.mark.parametrize(

@@ -100,7 +100,9 @@ def test_all_models_are_timed(bed, chains, tmp_path, monkeypatch):
         bed.dem, bed.files, list(chains["transitions"].values()), timing, LEARN, COMPARE, SPLITS,
         ModelSettings("pooled", 1, OPTIONS),
     )  # fmt: skip
-    plot_cost(timing, outputs(tmp_path, "fig2"), "#4477aa", 1.0)
+    where = tmp_path / "provenance.json"
+    where.write_text('{"machine": {"processor": "a processor"}}')
+    plot_cost(timing, bed.dem, [where], outputs(tmp_path, "fig2"), "#4477aa", 1.0)
     table = assert_drawn(tmp_path, "fig2").set_index(["model", "kind"])
     for name in NAMES:
         assert (table.loc[name].loc[["learn", "exact", "monte_carlo"], "wall_s"] > 0).all()

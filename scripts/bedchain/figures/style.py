@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Style of all figures: column widths of a journal, fonts, colours, and files as vectors and pixels."""
 
+import textwrap
 from collections.abc import Iterator
 from contextlib import contextmanager
 from dataclasses import dataclass
@@ -25,6 +26,10 @@ SINGLE_COLUMN_IN = 3.5
 DOUBLE_COLUMN_IN = 7.2
 LINE_COLOUR = "#555555"
 EMPTY_COLOUR = "#ffffff"
+# letters of a footnote over an inch of the page
+FOOTNOTE_SIZE, LETTERS_PER_IN = 6.5, 18.5
+# a map of a bed is at most this many times as high as wide; narrow beds are cut off above
+MOST_SLENDER = 8.0
 STYLE: Any = {
     "font.family": "DejaVu Sans",
     "font.size": 8,
@@ -94,9 +99,22 @@ def save_figure(figure: Figure, png: Path, pdf: Path, resolution_dpi: int) -> No
     resolution_dpi : int
         Of the png, and of images in the pdf [dots per inch].
     """
+    figure.draw_without_rendering()
+    figure.set_layout_engine("none")  # it was just worked out, for both forms
     for target, metadata in ((png, {"Software": None}), (pdf, {"CreationDate": None})):
         with atomic_file(target) as temporary:
             figure.savefig(temporary, dpi=resolution_dpi, metadata=metadata)
+
+
+def footnote(figure: Figure, text: str) -> None:
+    """A line below a figure that defines what its labels name; the layout makes room for it."""
+    width = int(LETTERS_PER_IN * figure.get_figwidth())
+    wrapped = textwrap.fill(" ".join(text.split()), width).replace("$", r"\$")
+    note = figure.legend(
+        [], [], title=wrapped, loc="outside lower left", alignment="left", borderpad=0.0, borderaxespad=0.2
+    )
+    note.get_title().set_fontsize(FOOTNOTE_SIZE)
+    note.get_title().set_color(LINE_COLOUR)
 
 
 def map_colours(name: str) -> Colormap:

@@ -1,15 +1,45 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Table 1: the values of a case beside the paper's."""
+"""Table 1: the values that matter, the paper's beside them in its own bed only."""
 
+import pytest
+
+from bedchain.case.load import load_case
 from bedchain.case.schema import load_schema
-from bedchain.comparison.table1 import table_of_values
+from bedchain.comparison.table1 import ROWS, table_of_values
+from bedchain.workflow import table_values
+from made import ROOT
 
 
-def test_values_stand_beside_the_paper_s_and_others_are_left_out():
-    values = {"particles.number": 9000, "particles.diameter_m": 1e-3, "figures.moments_s": [0.05, 0.3]}
-    table = table_of_values(values, load_schema()).set_index("key")
-    assert set(table.index) == set(values)
-    assert table.loc["particles.number", ["value", "paper_value"]].tolist() == ["9000", "81000"]
-    assert table.loc["particles.diameter_m", "value"] == "0.001"
-    assert table.loc["figures.moments_s", "value"] == "0.05 0.3"
-    assert table["meaning"].str.contains(r"\[.+\]").all()
+def table(case, with_paper=False):
+    values = table_values(load_case(ROOT / "cases" / case / "case.yaml"))
+    return table_of_values(values, load_schema(), with_paper).set_index("parameter")
+
+
+def test_the_paper_s_values_stand_beside_its_bed():
+    rows = table("paper", with_paper=True)
+    assert len(rows) == 15
+    assert rows.loc["bed, width x height", ["paper", "this_case"]].tolist() == ["0.27 x 1.05"] * 2
+    assert rows.loc["chains learned from", ["paper", "this_case"]].tolist() == ["10 to 15"] * 2
+    assert rows.loc["drag law", ["paper", "this_case"]].tolist() == ["not given", "gidaspow"]
+
+
+@pytest.mark.parametrize(
+    ("case", "there", "absent"),
+    [
+        ("short", {"drag law"}, {"time of a revolution", "bed, depth between the walls"}),
+        ("drum", {"time of a revolution"}, {"drag law", "gas velocity over the empty section"}),
+        ("mueller", {"bed, depth between the walls"}, {"time of a revolution"}),
+    ],
+)
+def test_other_beds_have_what_they_use_and_nothing_of_the_paper(case, there, absent):
+    rows = table(case)
+    assert "paper" not in rows.columns
+    assert there <= {*rows.index} and not absent & {*rows.index}
+
+
+def test_every_key_is_in_the_schema():
+    known = table("short").shape and load_schema()["properties"]
+    for row in ROWS:
+        for key in row.keys:
+            section, name = key.split(".")
+            assert name in known[section]["properties"], key
