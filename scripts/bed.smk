@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 # The bed: simulated by LIGGGHTS and OpenFOAM in restartable segments, or out of its archive; its frames.
+from bedchain.dem.repeats import repeat_ranks
 from bedchain.workflow import frame_files, solver_values
 
 DRUM = "liggghts_inputs/drum"
@@ -99,7 +100,7 @@ rule repeat_dem:
         f"{BENCHMARKS}/repeat_dem_{{repeat}}.tsv"
     conda:
         "../envs/python.yaml"
-    threads: CASE["run"]["ranks"]
+    threads: repeat_ranks(CASE["run"]["ranks"], len(REPEATS))
     params:
         **pick(CASE, "comparison.start_s", "comparison.end_s", "time.segment_s"),
         folder=subpath(input.dem, parent=True),

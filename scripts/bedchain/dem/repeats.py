@@ -26,6 +26,19 @@ def repeat_folder(case: Path, number: int) -> Path:
     return case / "repeats" / str(number)
 
 
+def repeat_ranks(ranks: int, repeats: int) -> int:
+    """MPI ranks of each repeat [1]: one where several repeats run side by side, so that no rank waits.
+
+    Parameters
+    ----------
+    ranks : int
+        MPI ranks of the run [1].
+    repeats : int
+        How many repeats the case has [1].
+    """
+    return 1 if repeats > 1 else ranks
+
+
 def kick_seed(seed: int, number: int) -> int:
     """Seed of a repeat's perturbation, a prime as LIGGGHTS demands.
 

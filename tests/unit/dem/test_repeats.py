@@ -3,7 +3,7 @@
 
 import pytest
 
-from bedchain.dem.repeats import LARGEST_SEED, kick_seed, segment_that_ends
+from bedchain.dem.repeats import LARGEST_SEED, kick_seed, repeat_ranks, segment_that_ends
 from bedchain.errors import UserError
 from bedchain.physics.whole_numbers import is_prime
 
@@ -22,3 +22,8 @@ def test_a_repeat_finds_its_segment_or_says_where_it_can_start():
     assert segment_that_ends(manifest, 1.0000001).name == "segment_1"
     with pytest.raises(UserError, match=r"ends at 1.2 s.*take 1 s.*time.segment_s that divides 1.2 s"):
         segment_that_ends(manifest, 1.2)
+
+
+def test_several_repeats_run_side_by_side_on_one_rank_each():
+    assert [repeat_ranks(2, repeats) for repeats in (1, 2, 3)] == [2, 1, 1]
+    assert repeat_ranks(1, 3) == 1

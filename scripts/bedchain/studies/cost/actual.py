@@ -71,12 +71,18 @@ def _solver_stages(case: Case, bed: Path, times: Mapping[str, Numbers]) -> dict[
         rows[name] = {"wall_s": sum(segment[f"{name}_s"] for segment in segments), "done_1": done}
     rows["dem"] |= {"disk_mb": _size_mb(state.rglob("*")), **_memory_of(times, "run_dem")}
     repeats = [simulated_here(file) for file in sorted(bed.glob("repeats/*/dem.json"))]
-    parts = [segment for repeat in repeats if repeat for segment in repeat["segments"]]
+    # of each segment: its share of the cores that the run has, since repeats run side by side
+    parts = [
+        segment | {"share": min(1.0, repeat["ranks"] / case["run"]["ranks"])}
+        for repeat in repeats
+        if repeat
+        for segment in repeat["segments"]
+    ]
     window_s = case["comparison"]["end_s"] - case["comparison"]["start_s"]
     if parts and (wanted := case["comparison"]["repeats"]):
         spans = sum(part["end_s"] - part["start_s"] for part in parts)
         rows["repeats"] = {
-            "wall_s": sum(part["wall_s"] for part in parts),
+            "wall_s": sum(part["wall_s"] * part["share"] for part in parts),
             "disk_mb": _size_mb(bed.glob("repeats/*/dem/**/*")),
             "done_1": spans / (wanted * window_s),
             **_memory_of(times, "repeat_dem_1"),

@@ -3,6 +3,7 @@
 
 import math
 from collections.abc import Iterable
+from dataclasses import replace
 
 import pandas as pd
 
@@ -10,6 +11,7 @@ from bedchain.case.presets import Preset, with_preset
 from bedchain.case.schema import Case
 from bedchain.dem import disk
 from bedchain.dem.memory import solver_bytes
+from bedchain.dem.repeats import repeat_ranks
 from bedchain.errors import CaseError
 from bedchain.physics.whole_numbers import ratio
 from bedchain.studies.cost import machine_speed
@@ -68,23 +70,24 @@ def solver_stages(case: Case, speed: Speed) -> dict[str, Numbers]:
     """Rows of settling, particles, exchange, gas, start-ups and repeats."""
     bed, time = machine_speed.bed_of(case), case["time"]
     window_s = case["comparison"]["end_s"] - case["comparison"]["start_s"]
-    memory_mb = solver_bytes(bed.number, bed.ranks) / MEGABYTE
-    parts = {
-        name: solver_wall(bed, span, speed) for name, span in (("run", time["end_s"]), ("repeat", window_s))
-    }
+    parts = solver_wall(bed, time["end_s"], speed)
     settling = machine_speed.settling_seconds(bed, time["settle_s"]) / speed.dem
     rows: dict[str, Numbers] = {"settling": {"wall_s": settling}}
     for name in SOLVERS if bed.gas_cells else SOLVERS[:1]:
-        rows[name] = {"wall_s": parts["run"][name]}
+        rows[name] = {"wall_s": parts[name]}
+    memory_mb = solver_bytes(bed.number, bed.ranks) / MEGABYTE
     rows["dem"] |= {"memory_mb": memory_mb, "disk_mb": run_disk(case, bed, time["end_s"])}
     rows["segment_starts"] = {
         "wall_s": _segments(case, time["end_s"]) * machine_speed.SEGMENT_START_S / speed.jobs
     }
     if repeats := case["comparison"]["repeats"]:
+        one = replace(bed, ranks=repeat_ranks(bed.ranks, repeats))
         starts = _segments(case, window_s) * machine_speed.SEGMENT_START_S / speed.jobs
+        wall = sum(solver_wall(one, window_s, speed).values()) + starts
         rows["repeats"] = {
-            "wall_s": repeats * (sum(parts["repeat"].values()) + starts),
-            "memory_mb": memory_mb,
+            # as many side by side as the run has ranks
+            "wall_s": repeats * wall * one.ranks / bed.ranks,
+            "memory_mb": solver_bytes(one.number, one.ranks) / MEGABYTE,
             "disk_mb": repeats * run_disk(case, bed, window_s),
         }
     return rows

@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """What a run took, beside its estimate."""
 
+import json
 import math
 
 import pandas as pd
@@ -63,6 +64,10 @@ def test_jobs_settling_repeats_and_errors_that_happened(short, results):
     assert found.loc["dem", "happened_memory_mb"] == 111
     assert found.loc["parse_dumps", "happened_disk_mb"] == pytest.approx(1e-3)
     assert found.loc["repeats", ["happened_wall_s", "done_1"]].tolist() == pytest.approx([50, 1 / 3])
+    manifest = json.loads((results / "repeats/1/dem.json").read_text())
+    (results / "repeats/1/dem.json").write_text(json.dumps(manifest | {"ranks": 1}))
+    beside = actual_cost(short, results, results, folders(results))
+    assert beside.loc["repeats", "happened_wall_s"] == pytest.approx(25)  # another one had the other core
     assert found.loc["run_chain_static", "done_1"] == 1
     assert "build_transitions_static" not in found.index
 
