@@ -9,7 +9,7 @@ import pytest
 from bedchain.studies.verification.suite import verify
 from made import ROOT
 
-# two errors in one build, since a build takes a minute: the law of the suspension has no part in the first
+# two errors in one build: the law of the suspension has no part in the first
 ERRORS = [
     ("dragLaws.C", "150 * solids", "130 * solids", "uniform_bed", "lattice at 0.2 m/s, gidaspow"),
     ("pEqn.C", "== fvc::ddt(voidage) + ", "== ", "suspension", "sinking speed of a uniform suspension"),
@@ -25,6 +25,8 @@ def wrong_solver(solver, tmp_path_factory):
         text = source.read_text()
         assert text.count(right) == 1
         source.write_text(text.replace(right, wrong))
+    # all but the two wrong sources are as they were
+    shutil.copytree(f"{solver}.objects", folder / "bedFoam.objects")
     command = ["sh", str(folder / "solver/build.sh"), str(folder / "bedFoam")]
     subprocess.run(command, cwd=ROOT, check=True, capture_output=True)
     return folder / "bedFoam"

@@ -1,0 +1,70 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""The build of bedFoam, over a stand-in of the compiler: what has changed is compiled, and nothing else."""
+
+import os
+import shutil
+import subprocess
+
+import pytest
+
+from made import ROOT
+
+COMPILER = """#!/bin/sh
+case $* in
+-print-multiarch) echo x86_64-linux-gnu && exit ;;
+--version) echo compiler 1 && exit ;;
+*" -c "*) file=${*##* -c } && file=$(basename "${file%% *}") && echo "$file" >>compiled ;;
+*) echo "$*" >linked ;;
+esac
+[ "$file" != "$BROKEN" ] || exit 1
+while [ "$1" != -o ]; do shift; done
+: >"$2"
+"""
+
+
+@pytest.fixture
+def build(tmp_path):
+    """Function that builds the sources of a folder, and gives the names of those that were compiled."""
+    (tmp_path / "bin").mkdir()
+    for name, text in (("g++", COMPILER), ("dpkg-query", "#!/bin/sh\n")):
+        (tmp_path / "bin" / name).write_text(text)
+        (tmp_path / "bin" / name).chmod(0o755)
+    shutil.copytree(ROOT / "openfoam_case/solver", tmp_path / "solver")
+    (tmp_path / "headers/finiteVolume").mkdir(parents=True)
+    (tmp_path / "headers/finiteVolume/fvCFD.H").touch()
+    search = {"PATH": f"{tmp_path / 'bin'}:{os.environ['PATH']}", "OPENFOAM_HEADERS": "headers"}
+
+    def run(broken="none"):
+        (tmp_path / "compiled").write_text("")
+        command = ["sh", "solver/build.sh", "out/bedFoam"]
+        subprocess.run(command, cwd=tmp_path, env=os.environ | search | {"BROKEN": broken}, check=True)
+        return sorted((tmp_path / "compiled").read_text().split())
+
+    return run
+
+
+def test_only_what_has_changed_is_compiled_again(build, tmp_path):
+    sources = tmp_path / "solver/bedFoam"
+    every = sorted(file.name for file in sources.glob("*.C"))
+    assert build() == every and (tmp_path / "out/bedFoam").exists()
+    assert build() == []
+    with (sources / "pEqn.C").open("a") as stream:
+        stream.write("// edited\n")
+    assert build() == ["pEqn.C"]
+    with (sources / "fields.H").open("a") as stream:
+        stream.write("// edited\n")
+    assert build() == every
+
+
+def test_a_source_that_is_gone_is_not_linked(build, tmp_path):
+    build()
+    assert "slabs.o" in (tmp_path / "linked").read_text()
+    (tmp_path / "solver/bedFoam/slabs.C").unlink()
+    assert build() == [] and "slabs.o" not in (tmp_path / "linked").read_text()
+
+
+def test_a_source_that_does_not_compile_is_compiled_again(build, tmp_path):
+    with pytest.raises(subprocess.CalledProcessError):
+        build(broken="pEqn.C")
+    assert not (tmp_path / "out/bedFoam").exists()
+    assert "pEqn.C" in build()
