@@ -84,10 +84,15 @@ def make_film(
         for chain, rng in zip(chains, generators, strict=True)
     ]
     with figure_style():
-        frame = film_frame(canvas, [label(chain.name) for chain in chains], halves.colours)
+        frame = film_frame(canvas, [panel_name(chain, chains[0].lag_s) for chain in chains], halves.colours)
     pictures = painted(frame, canvas, frames, lag, halves, voidages(frames, lag, gas, slab), gas, places)
     write_film(film, frame.shape, tqdm(pictures, "make_film", total, disable=None))
     LOG.info("%d frames, %.1f MB in %s", total, film.stat().st_size / 1e6, film)
+
+
+def panel_name(chain: Chain, lag_s: float) -> str:
+    """Name of a chain, and its lag where that is not the film's."""
+    return label(chain.name) if chain.lag_s == lag_s else f"{label(chain.name)}, {chain.lag_s:g} s"
 
 
 def chain_places(
