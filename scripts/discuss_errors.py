@@ -13,6 +13,7 @@ import pandas as pd
 from scipy import stats
 
 from bedchain.chains import registry
+from bedchain.chains.registry import CaseChains
 from bedchain.comparison.curves import curve_errors, curves_of
 from bedchain.files import write_csv
 from bedchain.measures.mixing import GROUPS, Splits
@@ -28,26 +29,6 @@ from bedchain.uncertainty.noise_floor import noise_floor
 AXES = ("x", "z")
 ROUND_OFF = 1e-6
 Row = dict[str, Any]
-
-
-@dataclass(frozen=True)
-class CaseChains:
-    """The case's own chains.
-
-    Attributes
-    ----------
-    columns, rows : int
-        Of their grid.
-    lag_s : float
-        Of a step [s].
-    estimator : {"literal", "per_step", "pooled"}
-        How counts become probabilities.
-    """
-
-    columns: int
-    rows: int
-    lag_s: float
-    estimator: str
 
 
 @dataclass(frozen=True)

@@ -11,6 +11,7 @@ import numpy as np
 import pandas as pd
 
 from bedchain.chains import registry
+from bedchain.chains.registry import CaseChains
 from bedchain.comparison.curves import curve_table
 from bedchain.errors import UserError
 from bedchain.figures.model_styles import BASELINE
@@ -70,34 +71,24 @@ class Observed:
 
 
 @dataclass(frozen=True)
-class CaseChains:
-    """The case's own chains.
+class ScoredChains(CaseChains):
+    """The case's own chains, and what all chains beside them share.
 
     Attributes
     ----------
-    columns, rows : int
-        Of their grid.
-    lag_s : float
-        Of a step [s].
-    estimator : {"literal", "per_step", "pooled"}
-        How counts become probabilities.
     seed : int
         Of the Monte Carlo runs.
     diameter_m : float
         Of a particle: no cell is smaller [m].
     """
 
-    columns: int
-    rows: int
-    lag_s: float
-    estimator: str
     seed: int
     diameter_m: float
 
 
 def score_models(
     bed: BedFiles, repeats: list[Path], files: ScoreFiles, learning: Window, comparison: Window,
-    observed: Observed, case: CaseChains, tried: list[Candidate] | None = None,
+    observed: Observed, case: ScoredChains, tried: list[Candidate] | None = None,
 ) -> None:  # fmt: skip
     """Choose the setting of each model inside the learning window, learn again, and test once.
 
@@ -109,7 +100,7 @@ def score_models(
     files : ScoreFiles
     learning, comparison : Window
     observed : Observed
-    case : CaseChains
+    case : ScoredChains
     tried : list of Candidate, optional
         All settings of all models by default.
 

@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Peak memory of a process, as the system keeps it."""
+"""Memory: of the machine, and the peak of a process, as the system keeps them."""
 
+import os
 import re
 from pathlib import Path
 
@@ -8,6 +9,11 @@ BYTES_IN_KB, BYTES_IN_MB = 1024, 1e6
 # of proc(5), clear_refs: the record of the highest memory use starts again
 CLEAR_PEAK = "5"
 PEAK = re.compile(r"^VmHWM:\s+(\d+) kB$", re.M)
+
+
+def physical_memory_bytes() -> int:
+    """Memory of the machine [bytes]."""
+    return os.sysconf("SC_PAGE_SIZE") * os.sysconf("SC_PHYS_PAGES")
 
 
 def peak_memory_mb(process: int | str = "self") -> float:

@@ -13,8 +13,9 @@ from importlib.metadata import distributions
 from pathlib import Path
 from typing import Any
 
+from bedchain.meter import BYTES_IN_MB, physical_memory_bytes
+
 DEBIAN_PACKAGES = ("liggghts", "libliggghts-dev", "openfoam", "libopenfoam", "libopenmpi-dev", "g++")
-MB = 1_000_000
 
 
 def python_packages() -> dict[str, str]:
@@ -41,12 +42,11 @@ def git_state() -> dict[str, Any]:
 
 def machine() -> dict[str, Any]:
     """Processor, cores, memory and system, without the name of the machine or its user."""
-    memory = os.sysconf("SC_PAGE_SIZE") * os.sysconf("SC_PHYS_PAGES")
     release = platform.freedesktop_os_release().get("PRETTY_NAME", "unknown")
     return {
         "processor": _processor(),
         "cores": os.cpu_count(),
-        "memory_mb": memory // MB,
+        "memory_mb": int(physical_memory_bytes() / BYTES_IN_MB),
         "kernel": platform.release(),
         "system": release,
         "python": platform.python_version(),

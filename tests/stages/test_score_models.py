@@ -45,7 +45,7 @@ def scored(folder, trajectory, repeats=(), tried=None):
         BedFiles(trajectory, trajectory.with_suffix(".json")), list(repeats),
         stage.ScoreFiles(**vars(paths)), LEARNING, COMPARISON,
         stage.Observed(Splits(SIZE / 2, SIZE / 2), Batch(0.03, MOMENTS)),
-        stage.CaseChains(10, 10, 0.025, "pooled", 5, 1e-3), TRIED if tried is None else tried,
+        stage.ScoredChains(10, 10, 0.025, "pooled", 5, 1e-3), TRIED if tried is None else tried,
     )  # fmt: skip
     return paths
 

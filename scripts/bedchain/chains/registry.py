@@ -73,6 +73,26 @@ class ModelSettings:
     options: dict[str, Any] = field(default_factory=dict)
 
 
+@dataclass(frozen=True)
+class CaseChains:
+    """The case's own chains.
+
+    Attributes
+    ----------
+    columns, rows : int
+        Of their grid.
+    lag_s : float
+        Of a step [s].
+    estimator : {"literal", "per_step", "pooled"}
+        How counts become probabilities.
+    """
+
+    columns: int
+    rows: int
+    lag_s: float
+    estimator: str
+
+
 def learn(
     name: str,
     frames: Frames,

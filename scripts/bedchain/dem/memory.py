@@ -1,13 +1,13 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Memory that a case needs, and its check against this machine before the start."""
 
-import os
 from pathlib import Path
 
 from tqdm import tqdm
 
 from bedchain.case.schema import Case
 from bedchain.errors import UserError
+from bedchain.meter import physical_memory_bytes
 from bedchain.physics.whole_numbers import ratio
 
 # Measured on the short and the paper's bed: mpirun and Python, each rank, each particle of the coupled solver
@@ -51,7 +51,7 @@ def solver_bytes(number: int, ranks: int) -> float:
 
 def machine_bytes() -> float:
     """Memory of this machine, or of the group of processes that this one belongs to where that has less."""
-    sizes = [float(os.sysconf("SC_PAGE_SIZE") * os.sysconf("SC_PHYS_PAGES"))]
+    sizes = [float(physical_memory_bytes())]
     for file in map(Path, GROUPS):
         if file.exists() and (limit := file.read_text(encoding="utf-8").strip()).isdecimal():
             sizes.append(float(limit))

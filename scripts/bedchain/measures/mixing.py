@@ -118,41 +118,6 @@ def remaining_from_positions(
     return remaining
 
 
-def remaining_over_starts(
-    x_m: NDArray[np.floating],
-    z_m: NDArray[np.floating],
-    split_x_m: float,
-    split_z_m: float,
-    steps: int,
-    lag: int = 1,
-) -> NDArray[np.float64]:
-    """`remaining_from_positions` from every start that ``steps`` lags follow: the scatter within the DEM.
-
-    Returns
-    -------
-    (n_starts, steps + 1, 4) array
-        Shares [1]; the particles are marked anew at each start.
-
-    Raises
-    ------
-    DataError
-        The window is shorter than the steps.
-    """
-    n_starts = len(x_m) - steps * lag
-    if n_starts < 1:
-        raise DataError(
-            f"{len(x_m)} frames hold no {steps} steps of {lag} frames: widen the window or take fewer"
-        )
-    now = sides(np.asarray(x_m), np.asarray(z_m), split_x_m, split_z_m)
-    curves = np.empty((n_starts, steps + 1, 4))
-    for step in range(steps + 1):
-        later = now[:, step * lag : step * lag + n_starts]
-        still = (now[:, :n_starts] & later).sum(axis=2)
-        size = now[:, :n_starts].sum(axis=2)
-        curves[:, step] = np.divide(still, size, out=np.full(size.shape, np.nan), where=size > 0).T
-    return curves
-
-
 def remaining_from_cells(
     cells: NDArray[np.int32], marked: NDArray[np.bool_], shares: NDArray[np.float64]
 ) -> NDArray[np.float64]:
@@ -192,11 +157,6 @@ def _on_side(cells, marked, shares):  # type: ignore[no-untyped-def]
 def _mean_of(marked: NDArray[np.bool_], total: NDArray[np.generic]) -> NDArray[np.float64]:
     size = marked.sum(axis=1)
     return np.divide(total, size, out=np.full(4, np.nan), where=size > 0)
-
-
-def group_shares(marked: NDArray[np.bool_]) -> NDArray[np.float64]:
-    """Share of all particles in each group, (n_groups,) [1]."""
-    return np.asarray(marked.mean(axis=1))
 
 
 def marked_histogram(

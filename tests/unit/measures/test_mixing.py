@@ -15,7 +15,6 @@ def test_sides_by_hand():
         [False, False, True],
         [True, True, False],
     ]
-    assert mixing.group_shares(marked).tolist() == pytest.approx([1 / 3, 2 / 3, 1 / 3, 2 / 3])
 
 
 def test_a_split_through_a_column_takes_its_part_of_the_area():
@@ -65,18 +64,6 @@ def test_remaining_shares_agree_with_loops():
     assert np.allclose(from_cells, found, atol=1e-12)  # both splits lie on edges
     cut = mixing.remaining_from_cells(grid.cell_of(x, z), marked, mixing.side_shares(grid, 0.5, 0.7))
     assert cut[0, 0] == 1.0 and cut[0, 1] < 1.0
-
-
-def test_curves_over_starts_hold_the_curve_from_each():
-    rng = np.random.default_rng(2)
-    x, z = rng.random((2, 12, 90))
-    curves = mixing.remaining_over_starts(x, z, 0.5, 0.5, 3, lag=2)
-    assert curves.shape == (6, 4, 4)
-    for start in range(6):
-        single = mixing.remaining_from_positions(x[start::2][:4], z[start::2][:4], 0.5, 0.5)
-        assert np.allclose(curves[start], single, atol=1e-12)
-    with pytest.raises(DataError, match="hold no 6 steps"):
-        mixing.remaining_over_starts(x, z, 0.5, 0.5, 6, lag=2)
 
 
 def test_an_empty_group_is_not_a_number():

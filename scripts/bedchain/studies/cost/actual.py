@@ -10,8 +10,9 @@ import pandas as pd
 
 from bedchain.case.schema import Case
 from bedchain.measures.mixing import GROUPS
+from bedchain.meter import BYTES_IN_MB
 from bedchain.provenance import rule_times
-from bedchain.studies.cost.estimate import MEGABYTE, PREDICTED, Numbers
+from bedchain.studies.cost.estimate import PREDICTED, Numbers
 from bedchain.studies.cost.machine_speed import SOLVERS, simulated_here
 
 FACTOR_AIM = 1.5  # ratio to the estimate within which an actual time should be
@@ -163,4 +164,4 @@ def _memory_of(times: Mapping[str, Numbers], job: str) -> Numbers:
 
 
 def _size_mb(files: Iterable[Path]) -> float:
-    return sum(file.stat().st_size for file in files if file.is_file()) / MEGABYTE
+    return sum(file.stat().st_size for file in files if file.is_file()) / BYTES_IN_MB

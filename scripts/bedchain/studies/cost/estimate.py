@@ -13,11 +13,11 @@ from bedchain.dem import disk
 from bedchain.dem.memory import solver_bytes
 from bedchain.dem.repeats import repeat_ranks
 from bedchain.errors import CaseError
+from bedchain.meter import BYTES_IN_MB
 from bedchain.physics.whole_numbers import ratio
 from bedchain.studies.cost import machine_speed
 from bedchain.studies.cost.machine_speed import SOLVERS, BedSize, Speed
 
-MEGABYTE = 1e6
 PREDICTED = ["wall_s", "memory_mb", "disk_mb", "error_floors"]
 Numbers = dict[str, float]
 
@@ -53,9 +53,9 @@ def predicted(
         rows["parse_dumps"] = {
             "wall_s": sum(cost["wall_s"] for cost in costs),
             "memory_mb": max(cost["memory_mb"] for cost in costs),
-            "disk_mb": sum(parsed) * disk.TRAJECTORY_BYTES / MEGABYTE,
+            "disk_mb": sum(parsed) * disk.TRAJECTORY_BYTES / BYTES_IN_MB,
         }
-    cells_mb = number * frames * disk.CELL_BYTES / MEGABYTE
+    cells_mb = number * frames * disk.CELL_BYTES / BYTES_IN_MB
     rows["assign_cells"] = _job("assign_cells", number * frames, speed) | {"disk_mb": cells_mb}
     learn_s = case["learning"]["end_s"] - case["learning"]["start_s"]
     moves = number * (_frames(case, learn_s) - 1)
@@ -75,7 +75,7 @@ def solver_stages(case: Case, speed: Speed) -> dict[str, Numbers]:
     rows: dict[str, Numbers] = {"settling": {"wall_s": settling}}
     for name in SOLVERS if bed.gas_cells else SOLVERS[:1]:
         rows[name] = {"wall_s": parts[name]}
-    memory_mb = solver_bytes(bed.number, bed.ranks) / MEGABYTE
+    memory_mb = solver_bytes(bed.number, bed.ranks) / BYTES_IN_MB
     rows["dem"] |= {"memory_mb": memory_mb, "disk_mb": run_disk(case, bed, time["end_s"])}
     rows["segment_starts"] = {
         "wall_s": _segments(case, time["end_s"]) * machine_speed.SEGMENT_START_S / speed.jobs
@@ -87,7 +87,7 @@ def solver_stages(case: Case, speed: Speed) -> dict[str, Numbers]:
         rows["repeats"] = {
             # as many side by side as the run has ranks
             "wall_s": repeats * wall * one.ranks / bed.ranks,
-            "memory_mb": solver_bytes(one.number, one.ranks) / MEGABYTE,
+            "memory_mb": solver_bytes(one.number, one.ranks) / BYTES_IN_MB,
             "disk_mb": repeats * run_disk(case, bed, window_s),
         }
     return rows
@@ -104,7 +104,7 @@ def run_disk(case: Case, bed: BedSize, span_s: float) -> float:
     """Size of the frames and restarts of a span of simulated time [MB]."""
     frame = bed.number * disk.DUMP_COLUMNS[case["bed"]["layers"]] * disk.DOUBLE_BYTES
     restart = bed.number * disk.RESTART_BYTES_PARTICLE + bed.gas_cells * disk.RESTART_BYTES_GAS_CELL
-    return (_frames(case, span_s) * frame + (_segments(case, span_s) + 1) * restart) / MEGABYTE
+    return (_frames(case, span_s) * frame + (_segments(case, span_s) + 1) * restart) / BYTES_IN_MB
 
 
 def error_of(case: Case, model: str, presets: Iterable[Preset]) -> float:

@@ -13,6 +13,7 @@ from numpy.typing import NDArray
 
 from bedchain.chains.chain import Chain
 from bedchain.errors import DataError
+from bedchain.meter import BYTES_IN_MB
 from bedchain.studies.candidates import Candidate, grid_of
 from bedchain.studies.marked_starts import Start, split, starts_in
 from bedchain.studies.records import record_of
@@ -41,7 +42,6 @@ HALF = "mcm"
 MOMENTS = 10
 # draws of a Monte Carlo of up to `FEW_TRACERS`, whose error depends on the draw; of more tracers a single one
 DRAWS, FEW_TRACERS = 8, 10_000
-MB = 1e6
 # lags that lead up to a start: as far as a chain of the second order looks back
 LAGS_BACK = 1
 
@@ -183,7 +183,7 @@ def measured(setting: ChainSetting, bench: Bench, frames: Frames) -> Row:
     part = frames.part(slice(setting.first - first, setting.last - first + 1))
     chain, learn_s = timed(lambda: learned(setting.candidate, part, task))
     size = sum(array.nbytes for array in chain.arrays().values())
-    cost = {"learn_s": learn_s, "memory_mb": size / MB}
+    cost = {"learn_s": learn_s, "memory_mb": size / BYTES_IN_MB}
     runs = [_drawn(chain, bench, setting, draw) for draw in range(_draws(setting))]
     result = cost | {"run_s": min(run_s for *_, run_s in runs)}
     result["cost_s"] = result["learn_s"] + result["run_s"]
