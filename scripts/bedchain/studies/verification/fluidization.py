@@ -24,7 +24,7 @@ NEAR = 0.10
 NEAR_WEIGHT = 0.02
 WIDTH, HEIGHT, NUMBER, DIAMETER = 0.04, 0.12, 2000, 1e-3  # settles about 5 cm deep
 FRICTION = 0.1  # less than a case's: a bed held by its side walls lets the gas carry less than its weight
-FASTEST, RAMP, HOLD = 0.85, 0.5, 0.4  # [m/s], [s] up and as long down, [s] at the fastest
+FASTEST, RAMP, HOLD = 0.85, 0.3, 0.2  # [m/s], [s] up and as long down, [s] at the fastest
 PACKED = (0.3, 0.75)  # of u_mf: the part of the curve to which Ergun's form is fitted
 SOURCE = "Ergun 1952 with the bed's own bulk voidage {:.3f}: pressure drop = weight"
 UP, DOWN = (0.0, RAMP), (RAMP + HOLD, 2 * RAMP + HOLD)
