@@ -153,8 +153,9 @@ def signed_rows(name: str, grid: Grid, lag_s: float, remaining: np.ndarray, runs
     rows = []
     for direction in dict.fromkeys(direction for direction, _ in GROUPS):
         of_runs = errors[:, [at == direction for at, _ in GROUPS]].mean(axis=1)
-        ends = of_runs.mean() + half_width(of_runs) * np.array([-1, 1])
-        rows.append(_row("error_signed", name, cell_size(grid), lag_s, direction, of_runs.mean(), "1", *ends))
+        mean, half = of_runs.mean(), half_width(of_runs)
+        ends = (mean - half, mean + half)
+        rows.append(_row("error_signed", name, cell_size(grid), lag_s, direction, mean, "1", ends))
     return rows
 
 
@@ -180,11 +181,11 @@ def spreading_rows(frames: Frames, grid: Grid, lag: int) -> list[Row]:
 
 def _row(
     quantity: str, source: str, cell_m: float, lag_s: float, part: str, value: float, unit: str,
-    ci_low: float = np.nan, ci_high: float = np.nan,
+    interval: tuple[float, float] = (np.nan, np.nan),
 ) -> Row:  # fmt: skip
     return {
         "quantity": quantity, "source": source, "cell_m": cell_m, "lag_s": lag_s, "part": part,
-        "value": float(value), "unit": unit, "ci_low": float(ci_low), "ci_high": float(ci_high),
+        "value": float(value), "unit": unit, "ci_low": float(interval[0]), "ci_high": float(interval[1]),
     }  # fmt: skip
 
 

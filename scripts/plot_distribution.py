@@ -6,6 +6,7 @@ from pathlib import Path
 import numpy as np
 import pandas as pd
 from matplotlib.colors import PowerNorm
+from matplotlib.figure import Figure
 
 from bedchain.figures.maps import cell_columns, height_to_show, map_panels, projection_note
 from bedchain.figures.model_styles import label
@@ -14,6 +15,7 @@ from bedchain.files import write_csv
 from bedchain.measures.batch import batch_of, observed_shares, total_variation
 from bedchain.stage import LOG, run_stage
 from bedchain.trajectory.cell_store import CellStore, frame_at, open_cells
+from bedchain.trajectory.grid import Grid
 
 # the square root shows the thin parts of the batch beside its dense rest
 GAMMA = 0.5
@@ -68,33 +70,32 @@ def plot_distribution(
     least = 1 / batch_of(store.grid, start, batch_height_m).sum()
     with figure_style():
         height = height_to_show(store, moments, start_s)
-        draw_moments(
-            store, moments, np.array([observed, expected]), height, least, notes, model, colour_map, files
-        )
+        shares = np.array([observed, expected])
+        files.save(draw_moments(store.grid, moments, shares, height, least, notes, model, colour_map))
     sources = {"dem": observed, model: expected}
     write_csv(pd.concat([shares_of(store, moments, *source) for source in sources.items()]), files.csv)
 
 
 def draw_moments(
-    store: CellStore, moments: np.ndarray, shares: np.ndarray, height: float, least: float,
-    notes: list[str], model: str, colour_map: str, files: FigureFiles,
-) -> None:  # fmt: skip
+    grid: Grid, moments: np.ndarray, shares: np.ndarray, height: float, least: float,
+    notes: list[str], model: str, colour_map: str,
+) -> Figure:  # fmt: skip
     """Two rows of maps, the DEM above the chain, one column a moment, with one colour bar for all."""
-    grid, shares = store.grid.shown, store.grid.projected(shares)
+    shares = grid.projected(shares)
     norm = PowerNorm(GAMMA, 0, 100 * np.quantile(shares[0][shares[0] > 0], 1 - TOP_SHARE))
-    figure, panels = map_panels(store.grid, moments, 2, height)
+    figure, panels = map_panels(grid, moments, 2, height)
     for row, name, of_row in zip(panels, ("DEM", label(model)), shares, strict=True):
         for axes, values in zip(row, of_row, strict=True):
             seen = np.where(values > 0.999 * least, 100 * values, 0)
-            mesh = draw_cells(axes, seen, grid, norm, map_colours(colour_map))
-        row[0].set_ylabel(f"{name}\n{store.grid.labels[1]}")
+            mesh = draw_cells(axes, seen, grid.shown, norm, map_colours(colour_map))
+        row[0].set_ylabel(f"{name}\n{grid.labels[1]}")
     for axes, note in zip(panels[1], notes, strict=True):
         axes.set_title(note, fontsize=7, pad=3)
     bar = figure.colorbar(mesh, ax=panels, extend="max", aspect=35, shrink=0.9, pad=0.015)
     bar.set_label("share of the batch in a cell [%],\nsquare-root scale")
     bar.outline.set_linewidth(0.5)
-    footnote(figure, f"{NOTE.format(least=100 * least)} {projection_note(store.grid)}")
-    files.save(figure)
+    footnote(figure, f"{NOTE.format(least=100 * least)} {projection_note(grid)}")
+    return figure
 
 
 def shares_of(store: CellStore, moments: np.ndarray, source: str, shares: np.ndarray) -> pd.DataFrame:

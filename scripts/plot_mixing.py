@@ -80,9 +80,9 @@ def plot_mixing(
         panels[0].set_xlim(table["time_s"].min(), table["time_s"].max())
         columns = math.ceil(len(entries) / math.ceil(len(entries) / LEGEND_COLUMNS))
         figure.legend(
-            entries.values(), entries.keys(), loc="outside upper center", ncols=columns, handlelength=2.6,
-            columnspacing=1.4,
-        )  # fmt: skip
+            list(entries.values()), list(entries), loc="outside upper center", ncols=columns,
+            handlelength=2.6, columnspacing=1.4,
+        )  # type: ignore[call-overload]  # fmt: skip  # tuples of artists are allowed
         files.save(figure)
     write_csv(table, files.csv)
 

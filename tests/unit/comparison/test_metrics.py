@@ -83,15 +83,15 @@ def values(rows):
 def test_a_chain_that_is_the_mean_has_the_floor_as_its_error():
     rng = np.random.default_rng(5)
     curves = 0.5 + rng.normal(0, 0.05, (100, 2000, 4))
-    found = values(noise_metrics("static", np.full((2000, 4), 0.5), curves))
+    metrics = values(noise_metrics("static", np.full((2000, 4), 0.5), curves))
     for group in ("left", "right", "low", "up"):
         # the rms of 2000 draws is known to 1.6 %
-        assert found[f"error_over_noise_{group}"] == pytest.approx(1, abs=0.05)
-    assert found["error_over_noise_mixing"] == pytest.approx(1, abs=0.02)
+        assert metrics[f"error_over_noise_{group}"] == pytest.approx(1, abs=0.05)
+        # the mean of 100 realisations is off by a tenth of the noise
+        assert metrics[f"error_rms_of_mean_{group}"] == pytest.approx(0.005, rel=0.1)
+    assert metrics["error_over_noise_mixing"] == pytest.approx(1, abs=0.02)
     another = values(noise_metrics("static", curves[0], curves))["error_over_noise_mixing"]
     assert another == pytest.approx(2**0.5, abs=0.05)
-        # the mean of 100 realisations is off by a tenth of the noise
-        assert found[f"error_rms_of_mean_{group}"] == pytest.approx(0.005, rel=0.1)
     off = values(noise_metrics("static", np.full((2000, 4), 0.6), curves))
     assert off["error_signed_of_mean_left"] == pytest.approx(0.1, abs=0.005)
     assert off["error_over_noise_left"] > 2
