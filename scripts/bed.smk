@@ -83,7 +83,8 @@ rule run_dem:
         " --ranks {threads} 2>&1 | tee {log} >&2"
 
 
-# Another realisation of the comparison window, from a state of the main run that was changed a little.
+# Another realisation of the comparison window, from a state of the main run that was changed a little. What else waits
+# for the main run is short, and fills the core beside an odd repeat.
 rule repeat_dem:
     input:
         rules.write_parameters.output,
@@ -98,6 +99,7 @@ rule repeat_dem:
         f"{LOGS}/repeat_dem_{{repeat}}.log",
     benchmark:
         f"{BENCHMARKS}/repeat_dem_{{repeat}}.tsv"
+    priority: 1
     conda:
         "../envs/python.yaml"
     threads: repeat_ranks(CASE["run"]["ranks"], len(REPEATS))
