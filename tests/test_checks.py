@@ -32,7 +32,8 @@ def checks(tmp_path):
         shutil.copy(ROOT / "test", tmp_path)
         for folder in ("envs", "bin", "tests", "scripts", "openfoam_case"):
             (tmp_path / folder).mkdir()
-        (tmp_path / "envs/setup.sh").write_text("")
+        shutil.copy(ROOT / "envs/one_run.sh", tmp_path / "envs")
+        (tmp_path / "envs/setup.sh").write_text("mkdir -p .setup\n")
         (tmp_path / "envs/activate.sh").write_text(f"PATH={tmp_path / 'bin'}:$PATH\n")
         for command in COMMANDS:
             stand_in = tmp_path / "bin" / command
