@@ -35,7 +35,7 @@ if not workflow.is_main_process:  # a job's own snakemake repeats no hint
     logging.getLogger("bedchain").setLevel(logging.ERROR)
 TYPED = workflow.is_main_process and "snakemake" in Path(sys.argv[0]).parts[-2:]  # sys.argv is a user's line
 if TYPED or workflow.remote_exec:  # its jobs end with it, however it ends
-    begin_run()
+    begin_run(submitted=workflow.remote_exec)
 if TYPED:
     options_or_exit(sys.argv[1:], workflow.resource_settings.cores, workflow.resource_settings.nodes)
 

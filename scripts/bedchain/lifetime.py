@@ -19,9 +19,16 @@ PR_SET_PDEATHSIG = 1  # of linux/prctl.h: signal to a child when its parent dies
 PATIENCE_S = 4.0  # for a process to end by itself
 
 
-def begin_run() -> None:
-    """Make this process the run that its jobs end with; it ends with the run that started it, if any."""
-    end_with_run()
+def begin_run(submitted: bool = False) -> None:
+    """Make this process the run that its jobs end with; it ends with the run that started it, if any.
+
+    Parameters
+    ----------
+    submitted : bool
+        Whether a cluster started it: the run in its environment is of the machine that submitted it.
+    """
+    if not submitted:
+        end_with_run()
     os.environ[RUN] = str(os.getpid())
 
 
@@ -29,8 +36,7 @@ def end_with_run() -> None:
     """Have this process end by SIGTERM as soon as its run or its parent has ended, by SIGKILL if need be.
 
     The parent is a job's shell: snakemake may wait for the output of a shell that is no more.
-    Without a run in the environment nothing is watched. A run on another machine is none: a job there has a
-    snakemake of its own, which is its run.
+    Without a run in the environment nothing is watched.
     """
     run = os.environ.get(RUN, "")
     if not run.isdecimal() or int(run) == os.getpid():

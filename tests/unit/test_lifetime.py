@@ -62,6 +62,12 @@ def test_without_a_run_nothing_is_watched(run, monkeypatch):
     end_with_run()
 
 
+def test_a_job_of_a_cluster_is_a_run_of_its_own(monkeypatch):
+    monkeypatch.setenv(RUN, "1")  # no process of this machine's run; followed, it would end this one
+    begin_run(submitted=True)
+    assert os.environ[RUN] == str(os.getpid())
+
+
 def test_a_run_gives_its_jobs_its_number(monkeypatch):
     monkeypatch.setenv(RUN, "")
     begin_run()
