@@ -122,7 +122,8 @@ def opened(folder: Path, words: dict[str, Any]) -> Iterator[Any]:
 def built_solver() -> Path:
     """Path of bedFoam, built where that is needed."""
     target = "results/bin/bedFoam"
-    command = [sys.executable, "-m", "snakemake", "--cores", "2", "--nolock", "--quiet", "all", "--", target]
+    command = [sys.executable, "-m", "snakemake", "--cores", "2", "--nolock", "--rerun-incomplete"]
+    command += ["--quiet", "all", "--", target]
     done = subprocess.run(command, cwd=ROOT, capture_output=True, text=True, check=False)
     assert done.returncode == 0, done.stdout + done.stderr
     return ROOT / target
