@@ -140,8 +140,8 @@ def _without_times(content: bytes) -> bytes:
 def kill_one(folder: Folder, kind: str, rng: np.random.Generator, number: int = signal.SIGKILL) -> str | None:
     """Start a run, kill one of its processes at a random moment, and wait until all others have ended.
 
-    Half of the moments are in the first 0.3 s of the process, when it reads a restart or writes one, in so
-    small a bed.
+    Two of three moments are while a solver runs: half of these in its first 0.3 s, when it reads a restart or
+    has hardly begun to write one, in so small a bed.
 
     Returns
     -------
@@ -155,8 +155,8 @@ def kill_one(folder: Folder, kind: str, rng: np.random.Generator, number: int = 
         A solver is left after `ORPHANS_S`, or any process so long after the run has ended.
     """
     run = folder.start()
-    victims = _wait_for(folder, kind, run)
-    time.sleep(float(rng.choice([rng.uniform(0, 0.3), rng.uniform(0, 4)])))
+    _wait_for(folder, kind if rng.random() < 1 / 3 else "rank", run)
+    time.sleep(float(rng.choice([rng.uniform(0, 0.3), rng.uniform(0, 6)])))
     victims = folder.victims(kind) or _wait_for(folder, kind, run)
     if not victims:
         run.wait()
