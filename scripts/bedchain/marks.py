@@ -22,7 +22,7 @@ from bedchain.files import refuse_special_file, write_text
 HASH_BYTES = 16  # no two files of a run share so many by accident
 # A file of more than so many bytes is noted by blocks that are evenly spread over it, with its first and its
 # last: its readers take parts of it, and a whole hash in each stage would cost more than the stage.
-WHOLE_BYTES, BLOCK_BYTES = 1 << 26, 1 << 20
+WHOLE_BYTES, BLOCK_BYTES = 1 << 24, 1 << 20
 NOTES = ".marks"
 DAMAGED = ".damaged"
 NOTED = (".csv", ".json", ".npy", ".npz")  # what later stages read
