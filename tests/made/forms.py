@@ -190,18 +190,21 @@ def write_form(form: str, folder: Path, series: Series) -> str:
 
 def _content(form: str, series: Series, frame: int) -> tuple[bytes | None, str]:
     text = text_frame(series, frame).encode()
-    return {
-        "text": (text, "dump"),
-        "crlf": (text.replace(b"\n", b"\r\n"), "dump"),
-        "gz": (gzip.compress(text), "dump.gz"),
-        "xz": (lzma.compress(text), "dump.xz"),
-        "binary": (binary_frame(series, frame), "bin"),
-        "lammps": (binary_frame(series, frame, b"DUMPCUSTOM"), "bin"),
-        "vtk": (legacy_vtk(series, frame), "vtk"),
-        "vtk_binary": (legacy_vtk(series, frame, ascii_form=False), "vtk"),
-        "vtk_gz": (gzip.compress(legacy_vtk(series, frame)), "vtk.gz"),
-        "blanks": ((" ".join(COLUMNS) + "\n" + _blank_rows(series, frame)).encode(), "txt"),
-    }.get(form, (None, {"vtp": "vtp", "vtu": "vtu"}.get(form, "vtk")))
+    suffixes = {"vtp": "vtp", "vtu": "vtu"}
+    contents = {
+        "text": (lambda: text, "dump"),
+        "crlf": (lambda: text.replace(b"\n", b"\r\n"), "dump"),
+        "gz": (lambda: gzip.compress(text), "dump.gz"),
+        "xz": (lambda: lzma.compress(text), "dump.xz"),
+        "binary": (lambda: binary_frame(series, frame), "bin"),
+        "lammps": (lambda: binary_frame(series, frame, b"DUMPCUSTOM"), "bin"),
+        "vtk": (lambda: legacy_vtk(series, frame), "vtk"),
+        "vtk_binary": (lambda: legacy_vtk(series, frame, ascii_form=False), "vtk"),
+        "vtk_gz": (lambda: gzip.compress(legacy_vtk(series, frame)), "vtk.gz"),
+        "blanks": (lambda: (" ".join(COLUMNS) + "\n" + _blank_rows(series, frame)).encode(), "txt"),
+    }
+    write, suffix = contents.get(form, (lambda: None, suffixes.get(form, "vtk")))
+    return write(), suffix
 
 
 def _blank_rows(series: Series, frame: int) -> str:
