@@ -102,9 +102,11 @@ def _values(path: Path, renamed: Mapping[str, str]) -> Columns:
     """Points and their data; the numbers in the header are compared with the size of the file first."""
     _check_counts(path)
     import pyvista  # slow to import
+    from vtkmodules.vtkCommonCore import vtkLogger
 
+    vtkLogger.SetStderrVerbosity(vtkLogger.VERBOSITY_OFF)  # its errors are raised, and one file can have many
     try:
-        with warnings.catch_warnings(), pyvista.VtkErrorCatcher(raise_errors=True, emit_warnings=False):
+        with warnings.catch_warnings(), pyvista.VtkErrorCatcher(raise_errors=True, send_to_logging=False):
             warnings.simplefilter("ignore")  # what VTK warns of, it also raises
             mesh = pyvista.read(path)
         if not isinstance(mesh, pyvista.PointSet | pyvista.PolyData | pyvista.UnstructuredGrid):
