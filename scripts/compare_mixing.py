@@ -7,6 +7,7 @@ from pathlib import Path
 import numpy as np
 import pandas as pd
 
+from bedchain.array_files import read_arrays
 from bedchain.comparison.curves import ChainFiles, curve_table, curves_of
 from bedchain.comparison.metrics import (
     batch_metrics,
@@ -20,7 +21,7 @@ from bedchain.comparison.metrics import (
 )
 from bedchain.dem.series import read_series
 from bedchain.errors import UserError, make_again
-from bedchain.files import read_arrays, write_csv
+from bedchain.files import write_csv
 from bedchain.measures.batch import observed_shares
 from bedchain.measures.mixing import Splits, remaining_from_positions, sides
 from bedchain.stage import LOG, run_stage

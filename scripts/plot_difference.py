@@ -10,10 +10,11 @@ from matplotlib.axes import Axes
 from matplotlib.collections import PolyCollection, QuadMesh
 from matplotlib.colors import LinearSegmentedColormap, Normalize
 
+from bedchain.array_files import read_arrays
 from bedchain.errors import UserError, make_again
 from bedchain.figures.maps import cell_columns, height_to_show, map_panels, projection_note
 from bedchain.figures.style import FigureFiles, figure_style, footnote
-from bedchain.files import read_arrays, write_csv
+from bedchain.files import write_csv
 from bedchain.measures.batch import total_variation
 from bedchain.stage import LOG, run_stage
 from bedchain.trajectory.cell_store import open_cells

@@ -8,6 +8,7 @@ import pandas as pd
 from matplotlib.colors import PowerNorm
 from matplotlib.figure import Figure
 
+from bedchain.array_files import read_arrays
 from bedchain.figures.maps import cell_columns, height_to_show, map_panels, projection_note
 from bedchain.figures.model_styles import label
 from bedchain.figures.style import FigureFiles, draw_cells, figure_style, footnote, map_colours
@@ -48,13 +49,11 @@ def plot_distribution(
         Name of a Matplotlib colour map.
     """
     store = open_cells(cells)
-    with np.load(chain) as content:
-        model = str(content["model"]) if "model" in content else model
-        moments, expected, drawn = (
-            content["moments_s"],
-            content["batch_share"],
-            content["batch_share_monte_carlo"],
-        )
+    content = read_arrays(chain)
+    model = str(content["model"]) if "model" in content else model
+    moments, expected, drawn = (
+        content[name] for name in ("moments_s", "batch_share", "batch_share_monte_carlo")
+    )
     observed = observed_shares(store, moments, start_s, batch_height_m)
     # the batch is finite: as many particles drawn from the chain itself differ from its expectation too
     by_dem, by_chance = (

@@ -1,11 +1,10 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Files and folders that appear complete or not at all, arrays in them, and a lock on a folder."""
+"""Files and folders that appear complete or not at all, and a lock on a folder."""
 
 import fcntl
 import glob
 import os
 import time
-import zipfile
 from collections.abc import Iterator
 from contextlib import contextmanager, suppress
 from pathlib import Path
@@ -13,7 +12,6 @@ from typing import IO, Any
 
 import numpy as np
 import pandas as pd
-from numpy.lib import format as npy_format
 from numpy.typing import NDArray
 
 from bedchain.errors import DataError, UserError, world_error
@@ -32,48 +30,6 @@ def write_arrays(path: Path | str, arrays: dict[str, NDArray[Any]]) -> None:
     """
     with atomic_file(Path(path)) as temporary, temporary.open("wb") as stream:
         np.savez(stream, allow_pickle=False, **arrays)
-
-
-def read_arrays(path: Path | str) -> dict[str, NDArray[Any]]:
-    """All arrays of an .npz.
-
-    Raises
-    ------
-    DataError
-        The file is missing, cut off, or not an .npz.
-    """
-    try:
-        with np.load(path, allow_pickle=False) as archive:
-            return {name: archive[name] for name in archive.files}
-    except (OSError, ValueError, EOFError, zipfile.BadZipFile, AttributeError) as error:
-        raise DataError(f"{path} cannot be read ({error}): make it again") from error
-
-
-def map_array(path: Path | str, name: str) -> np.memmap:
-    """Memory map of an array in an uncompressed .npz: it need not fit in memory.
-
-    Raises
-    ------
-    DataError
-        The file holds no such array, or a compressed one.
-    """
-    try:
-        with zipfile.ZipFile(path) as archive:
-            entry = archive.getinfo(f"{name}.npy")
-    except (OSError, KeyError, zipfile.BadZipFile) as error:
-        raise DataError(f"{path} holds no array {name!r} ({error}): make it again") from error
-    if entry.compress_type != zipfile.ZIP_STORED:
-        raise DataError(f"{path}: {name} is compressed and cannot be mapped: write it with numpy.savez")
-    with open(path, "rb") as stream:
-        # the local header has 30 bytes; the last four are the lengths of the name and of the extra field
-        stream.seek(entry.header_offset + 26)
-        lengths = np.frombuffer(stream.read(4), "<u2")
-        stream.seek(entry.header_offset + 30 + int(lengths.sum()))
-        version = npy_format.read_magic(stream)
-        read = npy_format.read_array_header_1_0 if version == (1, 0) else npy_format.read_array_header_2_0
-        shape, fortran, dtype = read(stream)
-        offset = stream.tell()
-    return np.memmap(path, dtype, "r", offset, shape, "F" if fortran else "C")
 
 
 def path_inside(folder: Path, name: Any) -> Path:

@@ -11,11 +11,11 @@ import pytest
 import yaml
 
 from assign_cells import Division, assign_cells
+from bedchain.array_files import read_arrays
 from bedchain.chains.registry import ModelSettings, load
 from bedchain.dem import run
 from bedchain.dem.parameter_files import write_parameters
 from bedchain.errors import UserError
-from bedchain.files import read_arrays
 from bedchain.measures.batch import Batch
 from bedchain.measures.mixing import Splits
 from bedchain.trajectory.dumps import read_dump

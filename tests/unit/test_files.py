@@ -11,13 +11,12 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+from bedchain.array_files import map_array, read_arrays
 from bedchain.errors import DataError, UserError
 from bedchain.files import (
     atomic_file,
     locked_folder,
-    map_array,
     path_inside,
-    read_arrays,
     refuse_special_file,
     write_arrays,
     write_text,
@@ -47,17 +46,6 @@ def test_a_failed_write_leaves_the_old_file_and_nothing_else(tmp_path):
         write_arrays(path, {"a": np.zeros(1000), "odd": np.array([object()])})
     assert path.read_bytes() == before
     assert list(tmp_path.iterdir()) == [path]
-
-
-def test_arrays_that_cannot_be_mapped_are_refused(tmp_path):
-    path = tmp_path / "some.npz"
-    np.savez_compressed(path, a=np.ones(3))
-    with pytest.raises(DataError, match="compressed and cannot be mapped"):
-        map_array(path, "a")
-    with pytest.raises(DataError, match="no array 'b'"):
-        map_array(path, "b")
-    with pytest.raises(DataError, match="cannot be read|no array"):
-        map_array(tmp_path / "absent.npz", "a")
 
 
 @pytest.mark.parametrize(

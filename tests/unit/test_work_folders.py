@@ -16,7 +16,9 @@ from made import ROOT
 REMOVERS = {
     "work_folders.discard_folder",  # by the mark
     "files.atomic_file",  # its own temporary file
+    "files._remove_left_over",  # the same of a process that was killed
     "files.atomic_folder",  # the mark
+    "store.retract",  # dem.json, the list of frames that stay
     "records.remove_other_results",  # by the names of stamp and record
     "pack_reference.pack_reference",  # the archive that it has just made and found wanting
     "gas_case.redistribute",  # parts that it has just copied

@@ -227,6 +227,10 @@ class MarkovChain:
             matrix = sparse.csr_array(
                 (arrays["data"], arrays["indices"], arrays["indptr"]), shape=(n_states, n_states)
             )
+            matrix.check_format(full_check=True)  # compiled loops trust its indices
+            fits = arrays["cell_of_state"].shape == (n_states,) and np.isfinite(matrix.data).all()
+            if not fits or matrix.data.min(initial=0) < 0:
+                raise DataError("the matrix of a chain does not fit its states")
             return cls(
                 str(arrays["name"]),
                 Grid.from_arrays(arrays | flat),

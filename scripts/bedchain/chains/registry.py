@@ -14,12 +14,13 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from bedchain.array_files import read_arrays
 from bedchain.chains import dynamic, jump, recurrence, static, velocity_class
 from bedchain.chains.between_steps import Fractions
 from bedchain.chains.chain import Chain
 from bedchain.chains.markov_chain import MarkovChain
-from bedchain.errors import DataError
-from bedchain.files import read_arrays, write_arrays
+from bedchain.errors import DataError, make_again
+from bedchain.files import write_arrays
 from bedchain.trajectory.frames import Frames
 from bedchain.trajectory.grid import Grid
 
@@ -182,5 +183,9 @@ def load(path: Path | str) -> Chain:
     arrays = read_arrays(path)
     name = str(arrays.pop("name", ""))
     if name not in READERS:
-        raise DataError(f"{path} holds no chain of a known model ({name!r}): build the transitions again")
-    return READERS[name](arrays | {"name": np.array(name)})
+        raise DataError(f"{path} holds no chain of a known model ({name!r}); {make_again(path)}")
+    try:
+        arrays["name"] = np.array(name)
+        return READERS[name](arrays)
+    except (ValueError, TypeError, KeyError, IndexError, OverflowError, RecursionError) as error:
+        raise DataError(f"{path} holds no whole chain ({error}); {make_again(path)}") from error

@@ -26,17 +26,22 @@ def read_expected(file: Path) -> pd.DataFrame:
     Raises
     ------
     UserError
-        A line has too many fields, a column is missing, a row is there twice, or a tolerance is not positive.
+        The file cannot be read, a line has too many fields, a column is missing, a row is there twice, or a
+        tolerance is not positive.
     """
     try:
         table = pd.read_csv(file, comment="#", skipinitialspace=True, dtype={"unit": str})
-    except pd.errors.ParserError as error:
+    except (OSError, ValueError) as error:
         raise UserError(f"{file}: {str(error).strip()}; put texts with a comma into quotes") from None
     if missing := [name for name in COLUMNS if name not in table]:
         raise UserError(f"{file} lacks the columns {', '.join(missing)}; add them")
     if table.duplicated(["quantity", "source"]).any():
         twice = table[table.duplicated(["quantity", "source"])].iloc[0]
         raise UserError(f"{file}: {twice.quantity} of {twice.source} is there twice; keep one")
+    numbers = {name: pd.to_numeric(table[name], errors="coerce") for name in ("value", "tolerance")}
+    if any(column.isna().any() for column in numbers.values()):
+        raise UserError(f"{file}: a value or a tolerance is no number; correct it")
+    table = table.assign(**numbers)
     if not (table.tolerance > 0).all():
         raise UserError(f"{file}: a tolerance is not positive; give each value a positive one")
     return table

@@ -2,14 +2,16 @@
 """Fields of the gas, from the OpenFOAM case of a segment or from an archive."""
 
 import tempfile
+from collections.abc import Mapping
 from pathlib import Path
 from typing import Any, NamedTuple
 
 import numpy as np
 import pyvista
 
-from bedchain.errors import UserError
-from bedchain.files import path_inside, read_arrays
+from bedchain.array_files import read_arrays
+from bedchain.errors import DataError, UserError, make_again
+from bedchain.files import path_inside
 
 
 class GasField(NamedTuple):
@@ -73,8 +75,20 @@ def archived_gas(file: Path, name: str, time_s: float) -> GasField:
     Returns
     -------
     GasField
+
+    Raises
+    ------
+    DataError
+        The file is not such a file.
     """
     arrays = read_arrays(file)
+    try:
+        return _nearest(arrays, name, time_s)
+    except (ValueError, TypeError, IndexError) as error:
+        raise DataError(f"{file} holds no times of a gas ({error}); {make_again(file)}") from error
+
+
+def _nearest(arrays: Mapping[str, np.ndarray], name: str, time_s: float) -> GasField:
     index = int(np.argmin(np.abs(arrays["times_s"] - time_s)))
     x, z = np.unique(arrays["x_m"]), np.unique(arrays["z_m"])
     # centres lie half a cell inside the walls

@@ -6,6 +6,9 @@ import json
 from pathlib import Path
 from typing import Any
 
+from jsonschema import Draft202012Validator
+from jsonschema.exceptions import ValidationError
+
 from bedchain.case.chosen import AUTO
 from bedchain.case.schema import Case, Schema, case_value, schema_keys
 from bedchain.errors import UserError
@@ -19,6 +22,23 @@ REPEATS = "repeats.csv"
 GAS = "gas.npz"
 # numbers that reach the solvers only through derived parameters
 DERIVED = ("gas.cell_size_m", "time.frame_interval_s")
+# of provenance.json, as far as it is read
+NUMBER, COUNT, OBJECT = {"type": "number"}, {"type": "integer", "minimum": 0}, {"type": "object"}
+SIZE = {"type": "number", "exclusiveMinimum": 0}
+FILE = {"type": "object", "required": ["bytes", "sha256"], "properties": {"bytes": COUNT}}
+KEYS = {
+    "solver_keys": OBJECT,
+    **dict.fromkeys(("start_s", "end_s", "history_s"), NUMBER),
+    "level_m": SIZE,
+    "n_frames": COUNT,
+    "repeats": COUNT,
+    "steps": {"type": "array", "items": COUNT},
+    "trajectory": {"type": "object", "required": ["ids", "number", "width_m", "height_m"]},
+    "dem": {"type": "object", "required": ["dem_step_s", "frame_interval_s"]},
+    "files": {"type": "object", "additionalProperties": FILE},
+}
+LATER = {"steps", "trajectory", "dem"}  # of unpacking
+FORM = {"type": "object", "required": sorted(KEYS.keys() - LATER), "properties": KEYS}
 SIMULATE = "or simulate the bed: --config reference=simulate"
 
 
@@ -68,11 +88,11 @@ def read_provenance(folder: Path) -> dict[str, Any]:
     refuse_special_file(folder / PROVENANCE)
     try:
         provenance = json.loads((folder / PROVENANCE).read_text(encoding="utf-8"))
-        for key in ("solver_keys", "start_s", "end_s", "history_s", "files"):
-            _ = provenance[key]
-    except (OSError, ValueError, KeyError, TypeError) as error:
+        Draft202012Validator(FORM).validate(provenance)
+    except (OSError, ValueError, RecursionError, ValidationError) as error:
+        reason = error.message if isinstance(error, ValidationError) else error
         raise UserError(
-            f"{folder}: no readable archive of a bed ({error!r}); fetch it again, {SIMULATE}"
+            f"{folder}: no readable archive of a bed ({reason}); fetch it again, {SIMULATE}"
         ) from error
     return dict(provenance)
 

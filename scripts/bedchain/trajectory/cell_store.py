@@ -7,8 +7,9 @@ from typing import NamedTuple
 
 import numpy as np
 
+from bedchain.array_files import map_array, read_arrays
 from bedchain.errors import DataError, UserError, make_again
-from bedchain.files import atomic_file, map_array, write_npy_header
+from bedchain.files import atomic_file, write_npy_header
 from bedchain.trajectory.chunks import read_frames
 from bedchain.trajectory.grid import OUTSIDE, Grid
 
@@ -105,11 +106,13 @@ def open_cells(path: Path) -> CellStore:
         The file was not written by `write_cells`.
     """
     try:
-        with np.load(path) as small:
-            times_s = small["times_s"]
-            grid = Grid.from_arrays(small)
         cells = map_array(path, "cells")
-    except (OSError, DataError, ValueError, KeyError, zipfile.BadZipFile) as error:
+        small = read_arrays(path, but="cells")
+        times_s = np.asarray(small["times_s"], float)
+        grid = Grid.from_arrays(small)
+        if times_s.shape != cells.shape[:1] or cells.ndim != 2 or cells.dtype.kind != "i":
+            raise DataError(f"{cells.dtype} of the shape {cells.shape} for {times_s.size} times")
+    except (DataError, ValueError, TypeError, KeyError, OverflowError) as error:
         raise UserError(f"{path}: not readable as cells ({error}); {make_again(path)}") from error
     return CellStore(cells, times_s, grid)
 

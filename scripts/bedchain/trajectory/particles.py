@@ -6,8 +6,9 @@ from typing import NamedTuple
 
 import numpy as np
 
+from bedchain.array_files import read_arrays
 from bedchain.errors import DataError
-from bedchain.files import read_arrays, write_arrays
+from bedchain.files import write_arrays
 
 PARTICLES = "particles.npz"
 

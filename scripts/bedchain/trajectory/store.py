@@ -25,14 +25,9 @@ from typing import Any
 import numpy as np
 from tqdm import tqdm
 
-from bedchain.errors import UserError, make_again
-from bedchain.files import (
-    atomic_file,
-    path_inside,
-    refuse_special_file,
-    write_npy_header,
-    write_text,
-)
+from bedchain.array_files import map_npy
+from bedchain.errors import DataError, UserError, make_again
+from bedchain.files import atomic_file, path_inside, refuse_special_file, write_npy_header, write_text
 from bedchain.marks import check_mark
 from bedchain.trajectory.dumps import frame_of, listed, read_dump
 
@@ -42,6 +37,8 @@ STORED = ("x", "z", "vx", "vz")
 RECORD = "segment.json"  # of a segment of a DEM run, in its folder
 # share of an interval: frames are multiples of the DEM step, their times differ by round-off only
 TIME_TOLERANCE = 1e-6
+# what the reading of a damaged json file, and of values in it, ends in
+JSON_FAULTS = (OSError, ValueError, KeyError, TypeError, OverflowError, RecursionError, AttributeError)
 DISK_RESERVE_BYTES = 50_000_000
 
 
@@ -90,14 +87,21 @@ def read_manifest(path: Path) -> dict[str, Any]:
         steps = np.array([frame["step"] for frame in manifest["frames"]], np.int64)
         times = np.array([frame["time_s"] for frame in manifest["frames"]], float)
         interval = float(manifest["frame_interval_s"])
+        columns, number = manifest.get("columns", ["id"]), manifest.get("number", 1)
+        words = isinstance(columns, list) and all(isinstance(name, str) for name in columns)
+        if not words or "id" not in columns or type(number) is not int or number < 1:
+            raise ValueError(f"{number!r} particles with the columns {columns!r}")
+        if not (0 < interval < np.inf and np.isfinite(times).all()):
+            raise ValueError(f"a frame interval of {interval} s")
         names = [frame["file"] for frame in manifest["frames"]]
         names += [segment["folder"] for segment in manifest.get("segments", [])]
         names += [manifest["gas"]] if "gas" in manifest else []
-    except (OSError, ValueError, KeyError, TypeError) as error:
+        names = list(dict.fromkeys(names))
+    except JSON_FAULTS as error:
         raise UserError(
             f"{path}: no readable manifest of a DEM run ({error!r}); run run_dem again"
         ) from error
-    for name in dict.fromkeys(names):
+    for name in names:
         path_inside(path.parent, name)
     if steps.size < 2:
         raise UserError(f"{path}: lists {steps.size} frames, at least 2 are needed; simulate longer")
@@ -143,6 +147,8 @@ def write_trajectory(
         nothing is written.
     """
     manifest = read_manifest(dem)
+    if lacking := sorted({"number", "columns"} - manifest.keys()):
+        raise DataError(f"{dem} lacks {', '.join(lacking)}; run run_dem again")
     frames, number = manifest["frames"], int(manifest["number"])
     shape, bounds = (len(frames), len(STORED), number), {"x": width_m, "z": height_m}
     check_disk(trajectory, 4 * int(np.prod(shape)))
@@ -258,12 +264,26 @@ def open_trajectory(path: Path, metadata_path: Path) -> tuple[np.ndarray, dict[s
     dict
         As `trajectory_metadata`.
     """
-    metadata = json.loads(metadata_path.read_text())
-    store = np.load(path, mmap_mode="r")
+    metadata = _read_metadata(metadata_path)
+    store = map_npy(path)
     shape = (len(metadata["times_s"]), len(metadata["columns"]), metadata["number"])
     if store.shape != shape:
         raise UserError(f"{path} has the shape {store.shape}, {shape} expected; {make_again(path)}")
     return store, metadata
+
+
+def _read_metadata(path: Path) -> dict[str, Any]:
+    try:
+        metadata = json.loads(path.read_text(encoding="utf-8"))
+        sizes = np.array([metadata["width_m"], metadata["height_m"]], float)
+        if not np.isfinite([*np.array(metadata["times_s"], float), *sizes]).all() or sizes.min() <= 0:
+            raise ValueError("times and sizes must be numbers")
+        if not {"x", "z"} <= set(metadata["columns"]) or not isinstance(metadata["columns"], list):
+            raise ValueError(f"the rows are {metadata['columns']}")
+        _ = metadata["number"], metadata["frame_interval_s"]
+        return dict(metadata)
+    except JSON_FAULTS as error:
+        raise DataError(f"{path} cannot be read ({error!r}); {make_again(path)}") from error
 
 
 def check_disk(target: Path, size: int) -> None:

@@ -10,9 +10,9 @@ from hypothesis import given
 from hypothesis import strategies as st
 from hypothesis.extra.numpy import arrays
 
+from bedchain.array_files import map_array
 from bedchain.chains.counting import Counts, count_moves, count_pairs
 from bedchain.errors import DataError
-from bedchain.files import map_array
 from bedchain.trajectory import chunks
 from bedchain.trajectory.grid import OUTSIDE
 from made.frames import hopping_cells

@@ -95,7 +95,7 @@ def test_unreadable_files_are_refused(tmp_path):
     with pytest.raises(DataError, match="no chain of a known model"):
         registry.load(path)
     np.savez(path, name=np.array("static"))
-    with pytest.raises(DataError, match="lacks 'bed_m'"):
+    with pytest.raises(DataError, match="no array 'bed_m'"):
         registry.load(path)
     with pytest.raises(DataError, match="cannot be read"):
         registry.load(tmp_path / "absent.npz")

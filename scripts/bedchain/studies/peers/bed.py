@@ -7,6 +7,7 @@ from pathlib import Path
 
 import numpy as np
 
+from bedchain.array_files import map_npy
 from bedchain.case.load import load_case
 from bedchain.case.parameters import Parameter, liggghts_text, openfoam_text, solver_parameters
 from bedchain.case.schema import load_schema
@@ -143,7 +144,7 @@ def fluidized_bed(case_file: Path, folder: Path, solver: Path, start_s: float) -
     if not moving.exists():
         with atomic_folder(moving) as part:
             np.save(part / START, _moving_particles(bed, settled, part, solver, start_s))
-    return replace(bed, particles=np.load(moving / START))
+    return replace(bed, particles=map_npy(moving / START).copy())
 
 
 def write_parameters(bed: PeerBed, folder: Path, **numbers: float | str) -> list[Parameter]:

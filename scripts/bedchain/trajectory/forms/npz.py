@@ -14,8 +14,8 @@ from pathlib import Path
 import numpy as np
 from numpy.lib import format as npy_format
 
+from bedchain.array_files import map_array
 from bedchain.errors import DataError
-from bedchain.files import map_array
 from bedchain.trajectory.forms.raw import PARTICLE, Columns, RawFrame, plain
 
 MOST_RATIO = 1032  # zlib's best
