@@ -18,6 +18,7 @@ REMOVERS = {
     "files.atomic_file",  # its own temporary file
     "files._remove_left_over",  # the same of a process that was killed
     "files.atomic_folder",  # the mark
+    "imported.write_imported",  # the first pass over the frames, which it has just written
     "store.retract",  # dem.json, the list of frames that stay
     "records.remove_other_results",  # by the names of stamp and record
     "pack_reference.pack_reference",  # the archive that it has just made and found wanting
