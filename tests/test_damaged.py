@@ -5,7 +5,7 @@ import pytest
 
 from made.damaged import TARGETS, try_damaged
 
-TIMES = 20  # of each file [1]
+TIMES = 12  # of each file [1]
 
 
 @pytest.mark.parametrize("name", TARGETS)

@@ -31,13 +31,17 @@ from bedchain.studies.validation import read_points
 from bedchain.trajectory.archive import check_archive, check_files
 from bedchain.trajectory.cell_store import write_cells
 from bedchain.trajectory.dumps import frame_of, read_dump
+from bedchain.trajectory.forms.files import FormSettings, frames_of
 from bedchain.trajectory.frames import Window
 from bedchain.trajectory.grid import Grid
 from bedchain.trajectory.packed_positions import FILTERS, read_levels, write_levels
 from bedchain.trajectory.realisations import open_bed
 from bedchain.trajectory.store import BedFiles, write_trajectory
+from bedchain.trajectory.survey import files_of
 from made import ROOT
 from made.case_text import CASE
+from made.forms import COLUMNS as FORM_COLUMNS
+from made.forms import moving, write_form
 from made.frames import stirred
 from made.mutations import mutated
 from made.synthetic_bed import (
@@ -272,6 +276,23 @@ def read_archive(file: Path) -> Any:
     return provenance
 
 
+def write_imported(form: str) -> Callable[[Path], None]:
+    """Maker of a file of another code's, of a form of `made.forms`."""
+
+    def write(file: Path) -> None:
+        first = files_of(write_form(form, file.parent / "of_form", moving(n_frames=1)), Path())[0]
+        shutil.copyfile(first, file)
+
+    return write
+
+
+def read_imported(form: str) -> Callable[[Path], object]:
+    """Reader of all frames of such a file."""
+    settings = FormSettings(names=FORM_COLUMNS if form == "binary" else None)
+    return lambda file: [frame.load() for frame in frames_of(file, settings)]
+
+
+IMPORTED = ("many_text", "binary", "gz", "table", "npz")  # VTK's readers are in C++, beyond a UserError
 ODD_VALUES = (None, True, 0, -1, 0.5, 1e308, 10**30, "", "x", "../x", [], {}, [1], {"a": 1}, "nan", "1")
 SCHEMA = load_schema()
 PAPER = load_case(ROOT / "cases/paper/case.yaml")
@@ -293,4 +314,13 @@ TARGETS = {
     "archive": Target(
         "provenance.json", copied("cases/paper/reference/provenance.json"), read_archive, restructured
     ),
+    **{
+        f"imported {form}": Target(
+            f"frame_100.{form}",
+            write_imported(form),
+            read_imported(form),
+            rezipped if form == "npz" else mutated,
+        )
+        for form in IMPORTED
+    },
 }
