@@ -14,7 +14,7 @@ from bedchain.array_files import map_array
 from bedchain.chains.counting import Counts, count_moves, count_pairs
 from bedchain.errors import DataError
 from bedchain.trajectory import chunks
-from bedchain.trajectory.grid import OUTSIDE
+from bedchain.trajectory.grid import OUTSIDE, Grid
 from made.frames import hopping_cells
 
 # Shares are sums of at most a few hundred fractions.
@@ -235,3 +235,11 @@ def test_where_all_are_always_there_nothing_is_lost():
     assert counts.lost is None and counts.inserted is None
     with pytest.raises(DataError, match="is in cell -2"):
         count_moves(hopping_cells(1) - 2, 12)
+
+
+def test_a_grid_in_three_dimensions_keeps_only_what_occurs():
+    grid, rng = Grid(0.1, 0.2, 100, 200, 0.1, 100), np.random.default_rng(3)
+    x, z, y = (length * rng.random((3, 20_000)) for length in grid.size)
+    counts = count_moves(grid.cell_of(x, z, y_m=y), grid.n_cells)
+    assert grid.n_cells == 2_000_000
+    assert counts.moves.sum() == 40_000 and counts.moves.nnz <= 40_000
