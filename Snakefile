@@ -85,28 +85,34 @@ PLOTS = [
 ]
 
 
+# what people look at, on one page: of both beds where both are made
+REPORT = "results/report.html" if WITH_PAPER else f"{RESULTS}/report.html"
+TABLES = [
+    "mixing.csv",
+    "metrics.csv",
+    "diagnostics.csv",
+    "choice.csv",
+    "stationarity.csv",
+    "timing.csv",
+    "table1.csv",
+    "table1.html",
+    *(["left_out.csv"] if FRAMES else ["audit.csv"]),
+    "provenance.json",
+    *(["residence.csv"] if OPEN else []),
+    *(["segregation.csv"] if "marks" in CASE else []),
+    *(["agreement.csv"] if CLAIMS and {*MODEL_FIGURES} <= {*MODELS} else []),
+]
+BED_FILES = [
+    *expand(f"{FIGURES}/{{name}}{{form}}", name=PLOTS, form=FORMS.values()),
+    f"{FIGURES}/film.mp4",
+    *expand(f"{RESULTS}/{{name}}", name=TABLES),
+]
+
+
 rule all:
     input:
-        (lambda wildcards: rules.paper_all.input) if WITH_PAPER else [],
-        expand(f"{FIGURES}/{{name}}{{form}}", name=PLOTS, form=FORMS.values()),
-        f"{FIGURES}/film.mp4",
-        expand(
-            f"{RESULTS}/{{name}}",
-            name=[
-                "mixing.csv",
-                "metrics.csv",
-                "diagnostics.csv",
-                "choice.csv",
-                "stationarity.csv",
-                "timing.csv",
-                "table1.csv",
-                *(["left_out.csv"] if FRAMES else ["audit.csv"]),
-                "provenance.json",
-                *(["residence.csv"] if OPEN else []),
-                *(["segregation.csv"] if "marks" in CASE else []),
-                *(["agreement.csv"] if CLAIMS and {*MODEL_FIGURES} <= {*MODELS} else []),
-            ],
-        ),
+        BED_FILES,
+        REPORT if WORDS.get("studies", True) else [],
 
 
 include: "scripts/bed.smk"
@@ -129,6 +135,7 @@ if WITH_PAPER:
 if WORDS.get("studies", True):
 
     include: "scripts/studies.smk"
+    include: "scripts/report.smk"
 
 
 # A word that nothing reads ends here, before anything is planned. Snakemake itself gets the targets later.
@@ -146,6 +153,14 @@ if TYPED:
 
     onstart:
         end_all_at_sigterm()
+
+
+# The last line of a run that made the report says where it is.
+if TYPED and WORDS.get("studies", True):
+
+    onsuccess:
+        if Path(REPORT).exists():
+            print(f"Look at {REPORT}: figures, films and tables on one page; it opens in any browser.")
 
 
 # The cause of a failure stands in the last lines, below snakemake's own.

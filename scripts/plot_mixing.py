@@ -4,18 +4,17 @@
 import math
 import re
 from pathlib import Path
+from typing import Any
 
 import pandas as pd
 from matplotlib import pyplot as plt
-from matplotlib.artist import Artist
 from matplotlib.axes import Axes
 
-from bedchain.array_files import read_arrays
 from bedchain.comparison.curves import ChainFiles
 from bedchain.errors import UserError, make_again
 from bedchain.figures.model_styles import ModelStyle, label, model_styles
 from bedchain.figures.style import DOUBLE_COLUMN_IN, FigureFiles, figure_style
-from bedchain.files import CSV_DIGITS, write_csv
+from bedchain.files import CSV_DIGITS, read_arrays, write_csv
 from bedchain.stage import run_stage
 from bedchain.uncertainty.bands import band
 
@@ -31,7 +30,7 @@ RUNS_COLOUR, RUNS_EDGE = "#d4d4d4", "#9a9a9a"
 MIXED_COLOUR = "#888888"
 LEGEND_COLUMNS = 4
 # a key of a legend: what is drawn above it
-Entries = dict[str, tuple[Artist, ...]]
+Entries = dict[str, Any]
 
 
 def plot_mixing(
@@ -83,7 +82,7 @@ def plot_mixing(
         figure.legend(
             list(entries.values()), list(entries), loc="outside upper center", ncols=columns,
             handlelength=2.6, columnspacing=1.4,
-        )  # type: ignore[call-overload]  # fmt: skip  # tuples of artists are allowed
+        )  # fmt: skip
         files.save(figure)
     write_csv(table, files.csv)
 

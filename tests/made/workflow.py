@@ -37,7 +37,7 @@ FIGURES = {
     *("plot_chapman_kolmogorov", "plot_timescales", "plot_stationarity", "plot_discussion", "make_film"),
     "plot_choice",
 }
-TABLES = {"write_table", "write_provenance", "discuss_errors"}
+TABLES = {"write_table", "write_provenance", "discuss_errors", "write_report"}
 ALL = {"audit_scene"} | BED | CHAINS | FIGURES | TABLES
 # rules of the studies
 SCORES = {"score_models", "plot_pareto", "plot_best_mixing", "plot_autocorrelation"}

@@ -188,6 +188,8 @@ def advance(run: SegmentedRun, segment_steps: int, begin: Callable[[], None]) ->
     begin : callable
         Makes the folder that the first segment goes on from.
     """
+    if run.results == run.case:
+        print(f"run_dem: to see the bed while it runs, ./run look {run.case.name}", flush=True)
     say_lost(run)
     if _usable(run.state / run.origin, run.start_step) is None:
         begin()

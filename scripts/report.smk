@@ -1,0 +1,32 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+# The report of a run: one page of all figures, films and tables of its beds, with their captions.
+import re
+
+REPORT_FILES = [*BED_FILES, *(rules.paper_all.input if WITH_PAPER else [])]
+
+
+def figure_names(plot):
+    """Regular expression of the names of a rule's figures."""
+    row = FIGURE_RULES[plot]
+    return re.sub(r"{(\w+)}", lambda found: f"({row['wildcards'][found[1]]})", row["name"])
+
+
+rule write_report:
+    input:
+        code("write_report"),
+        [f"scripts/captions/{plot}.rst" for plot in [*FIGURE_RULES, "make_film"]],
+        "scripts/bedchain/figures/report.html",
+        files=REPORT_FILES,
+    output:
+        report=REPORT,
+    log:
+        f"{LOGS}/write_report.log",
+    conda:
+        "../envs/python.yaml"
+    params:
+        captions={
+            **{figure_names(plot): f"scripts/captions/{plot}.rst" for plot in FIGURE_RULES},
+            "film": "scripts/captions/make_film.rst",
+        },
+    script:
+        "write_report.py"
