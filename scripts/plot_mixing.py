@@ -10,11 +10,12 @@ import pandas as pd
 from matplotlib import pyplot as plt
 from matplotlib.axes import Axes
 
+from bedchain.array_files import read_arrays
 from bedchain.comparison.curves import ChainFiles
 from bedchain.errors import UserError, make_again
 from bedchain.figures.model_styles import ModelStyle, label, model_styles
 from bedchain.figures.style import DOUBLE_COLUMN_IN, FigureFiles, figure_style
-from bedchain.files import CSV_DIGITS, read_arrays, write_csv
+from bedchain.files import CSV_DIGITS, write_csv
 from bedchain.stage import run_stage
 from bedchain.uncertainty.bands import band
 
