@@ -78,6 +78,7 @@ PLOTS = [
     "fig_chapman_kolmogorov",
     "fig_timescales",
     "fig_choice",
+    "fig_modes",
     "fig_stationarity",
     *(["fig_residence"] if OPEN else []),
     *(["fig_segregation"] if "marks" in CASE else []),

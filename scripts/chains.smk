@@ -195,6 +195,7 @@ rule diagnose_chains:
         transitions=expand(rules.build_transitions.output.transitions, model=OF_CASE),
     output:
         diagnostics=f"{RESULTS}/diagnostics.csv",
+        modes=f"{RESULTS}/modes.csv",
     log:
         f"{LOGS}/diagnose_chains.log",
     benchmark:

@@ -25,7 +25,7 @@ from bedchain.stage import LOG, run_stage
 from bedchain.trajectory.frames import Window
 from bedchain.trajectory.realisations import open_realisation
 from bedchain.trajectory.store import BedFiles
-from bedchain.uncertainty.left_out import left_out_band
+from bedchain.uncertainty.bands import block_band
 
 DISPERSION = "particles' var(displacement) / (2 lag) at the chosen lag"
 MEMORY = "correlation of successive displacements at the lag that the place does not explain"
@@ -132,13 +132,13 @@ def basis_rows(lag: ChosenLag, curve: DispersionByLag) -> list[Row]:
 
 def dispersion_table(curve: DispersionByLag) -> pd.DataFrame:
     """Dispersion by lag with its band, a row for each axis and lag."""
-    low, high = left_out_band(curve.coefficient_m2_s, curve.left_out_m2_s)
+    low, high = block_band(curve.coefficient_m2_s, curve.left_out_m2_s, "positive")
     parts = [
         pd.DataFrame(
             {
                 "quantity": "dispersion", "axis": axis, "lag_s": curve.lags_s, "cell_m": np.nan,
                 "value": curve.coefficient_m2_s[:, at], "unit": "m2/s",
-                "ci_low": np.maximum(low[:, at], 0.0), "ci_high": high[:, at],
+                "ci_low": low[:, at], "ci_high": high[:, at],
             }
         )
         for at, axis in enumerate(AXES)

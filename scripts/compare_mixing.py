@@ -104,16 +104,17 @@ def compare_mixing(
             raise UserError(
                 f"{path} covers another window than {start_s:g} to {end_s:g} s; {make_again(path)}"
             )
-        for source, how, replicates in (
-            (model, "", chain["remaining_replicates"]),
-            (f"{model}_monte_carlo", "_monte_carlo", None),
+        left_out = (chain["remaining_left_out"], chain["batch_share_left_out"])
+        for source, how, (curves_without, shares_without) in (
+            (model, "", left_out),
+            (f"{model}_monte_carlo", "_monte_carlo", (None, None)),
         ):
             remaining, share = chain[f"remaining{how}"], chain[f"batch_share{how}"]
             curves.append(curve_table(chain["times_s"], source, remaining))
-            rows += model_metrics(source, remaining, dem, replicates)
+            rows += model_metrics(source, remaining, dem, curves_without)
             if further:
                 rows += noise_metrics(source, remaining, realisations)
-            rows += batch_metrics(source, chain["moments_s"], share, observed)
+            rows += batch_metrics(source, chain["moments_s"], share, observed, shares_without)
         rows += report_metrics(model, str(chain["report"]))
     table = pd.DataFrame(rows)
     write_csv(pd.concat(curves, ignore_index=True), tables.mixing)

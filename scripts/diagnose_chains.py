@@ -6,9 +6,11 @@ from functools import partial
 from pathlib import Path
 
 import numpy as np
+import pandas as pd
 
 from bedchain.chains import registry
 from bedchain.chains.chain import Chain
+from bedchain.chains.circulation import circulation
 from bedchain.chains.counting import count_moves
 from bedchain.chains.estimators import visited_density
 from bedchain.chains.markov_chain import MarkovChain
@@ -21,10 +23,13 @@ from bedchain.comparison.diagnostics import (
     lacey_rows,
     table,
     time_rows,
+    times_of,
 )
 from bedchain.comparison.forecasts import count_sides
 from bedchain.comparison.markov_test import check_model, counted_rows, doubled_lags
 from bedchain.comparison.metrics import Metric, metric
+from bedchain.comparison.mode_maps import COLUMNS as MAP_COLUMNS
+from bedchain.comparison.mode_maps import mode_maps, mode_rows
 from bedchain.files import write_csv
 from bedchain.measures.batch import total_variation
 from bedchain.measures.mixing import Splits, marked_histogram, sides
@@ -33,7 +38,7 @@ from bedchain.trajectory.frames import Frames, Window, lag_frames
 from bedchain.trajectory.grid import Grid
 from bedchain.trajectory.realisations import open_bed
 from bedchain.trajectory.store import BedFiles
-from bedchain.uncertainty.bands import block_length
+from bedchain.uncertainty.bands import Array, memory, shortness
 
 # the top of the bed, for passages from its bottom: reached by this share of the particles at a time
 TOP_SHARE = 0.05
@@ -49,7 +54,7 @@ REPORTED = ("mixing_time", "long_run_total_variation", "chapman_kolmogorov_rms")
 
 
 def diagnose_chains(
-    bed: BedFiles, transitions: list[Path], diagnostics: Path,
+    bed: BedFiles, transitions: list[Path], diagnostics: Path, modes: Path,
     learning: Window, comparison: Window, splits: Splits, settings: ModelSettings,
 ) -> None:  # fmt: skip
     """Test the chains on their own learning window, and read from them what they imply for the bed.
@@ -62,7 +67,10 @@ def diagnose_chains(
     transitions : list of Path
         ``transitions_<model>.npz`` of each model.
     diagnostics : Path
-        Table to make; its rows are those of `comparison.diagnostics` and `comparison.markov_test`.
+        Table to make; its rows are those of `comparison.diagnostics`, `comparison.markov_test` and
+        `comparison.mode_maps`.
+    modes : Path
+        Table of maps to make: the slowest processes over the bed, and its circulation.
     learning, comparison : Window
     splits : Splits
     settings : ModelSettings
@@ -78,33 +86,38 @@ def diagnose_chains(
     lags = doubled_lags(lag, len(frames.times_s))
     longest = max(lags[-1], int(FOLLOWED_SHARE * len(frames.times_s)) // lag * lag)
     looks = count_sides(frames, *splits, range(lag, longest + 1, lag))
-    block = block_length(frames, splits.split_x_m, lag)
-    random = iter(np.random.default_rng(settings.seed).spawn(1 + 3 * len(chains)))
+    remembered = memory(frames, splits.split_x_m)
+    if short := shortness((len(frames.times_s) - 1) / remembered):
+        LOG.warning("the learning window's %s", short)
+    random = iter(np.random.default_rng(settings.seed).spawn(2 * len(chains)))
     density = visited_density(count_moves(frames.cells, run.grid.n_cells, lag))
     top = top_row(density, run.grid, TOP_SHARE)
 
     rows = estimator_rows(frames, run.grid, lag, list(chains))
-    rows += counted_rows(looks, frames, block, next(random))
-    for name in with_matrix:
+    rows += counted_rows(looks, frames, remembered)
+    before = run.up_to(learning.start_s, lag)
+    maps: list[pd.DataFrame] = []
+    for name, markov in with_matrix.items():
         options = settings.options.get(name, {})
         relearner = partial(
             registry.relearner, name, frames, run.grid, estimator=settings.estimator, **options
         )
-        rows += check_model(name, relearner, frames, looks, lags, block, next(random))
+        times_there = partial(times_from, before, 1 / frames.cells.shape[1], top)
+        checked, first = check_model(name, relearner, frames, looks, lags, remembered, times_there)
+        numbers = (first.whole.further, first.left_out.further)
+        flow = circulation(first.chain, first.modes.density)
+        maps.append(mode_maps(first.chain, first.modes, flow))
+        rows += mode_rows(first.chain, first.modes, flow)
+        rows += checked + time_rows(name, markov.lag_s, top * run.grid.cell_height_m, *numbers)
     rows += path_rows("dem", frames, run.grid, top, lags)
     known = in_cells(frames.times_s, frames.cells, run.grid)
     rows += dispersion_rows("dem_cells", known, run.grid, lags[::DISPERSION_STRIDE])
-    before = run.up_to(learning.start_s, lag)
     for name, chain in chains.items():
         if name not in PAPER_MODELS:
             distance = total_variation(chain.long_run_density(before), density)
             rows.append(
                 metric("long_run_total_variation", name, distance, lag_s=chain.lag_s, part=settings.estimator)
             )
-        if name in with_matrix:
-            matrix_chain = with_matrix[name]
-            held = np.bincount(matrix_chain.states(before), minlength=matrix_chain.matrix.shape[0])
-            rows += time_rows(matrix_chain, held.astype(float), 1 / frames.cells.shape[1], top)
         times = frames.times_s[::lag]
         paths = np.array([now.copy() for now in chain.paths(before, len(times) - 1, next(random))])
         steps = [one // lag for one in lags]
@@ -113,10 +126,17 @@ def diagnose_chains(
     compared = run.window(comparison)
     rows += index_rows(chains, start, compared, splits, lag, random)
     write_csv(table(rows), diagnostics)
+    write_csv(pd.concat(maps) if maps else pd.DataFrame(columns=list(MAP_COLUMNS)), modes)
     for one in rows:
         if one["quantity"] in REPORTED and one["lag_s"] == lag * frames.interval_s:
             what = f"{one['source']} {one.get('part', '')} {one['quantity']}"
             LOG.info("%s: %.4g %s", what, one["value"], one["unit"])
+
+
+def times_from(start: Frames, least_share: float, top: int, chain: MarkovChain) -> Array:
+    """`times_of` a chain that starts from the last of some frames."""
+    held = np.bincount(chain.states(start), minlength=chain.matrix.shape[0])
+    return times_of(chain, held.astype(float), least_share, top)
 
 
 def path_rows(source: str, frames: Frames, grid: Grid, top: int, lags: Sequence[int]) -> list[Metric]:

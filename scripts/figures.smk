@@ -83,6 +83,10 @@ FIGURE_RULES = {
         "name": "fig_choice",
         "input": {"choice": CHOICE, "curve": f"{RESULTS}/choice_curve.csv"},
     },
+    "plot_modes": {
+        "name": "fig_modes",
+        "input": {"modes": f"{RESULTS}/modes.csv", "cells": CELLS},
+    },
     "plot_stationarity": {
         "name": "fig_stationarity",
         "input": {**TRAJECTORY, **SETTLED, "bed_series": RUN["bed_series"]},

@@ -17,6 +17,7 @@ from bedchain.measures.batch import batch_of, observed_shares, total_variation
 from bedchain.stage import LOG, run_stage
 from bedchain.trajectory.cell_store import CellStore, frame_at, open_cells
 from bedchain.trajectory.grid import Grid
+from bedchain.uncertainty.bands import block_band
 
 # the square root shows the thin parts of the batch beside its dense rest
 GAMMA = 0.5
@@ -54,6 +55,8 @@ def plot_distribution(
     moments, expected, drawn = (
         content[name] for name in ("moments_s", "batch_share", "batch_share_monte_carlo")
     )
+    # the best chain of the scores has none
+    without = content.get("batch_share_left_out", expected[:0])
     observed = observed_shares(store, moments, start_s, batch_height_m)
     # the batch is finite: as many particles drawn from the chain itself differ from its expectation too
     by_dem, by_chance = (
@@ -72,7 +75,12 @@ def plot_distribution(
         shares = np.array([observed, expected])
         files.save(draw_moments(store.grid, moments, shares, height, least, notes, model, colour_map))
     sources = {"dem": observed, model: expected}
-    write_csv(pd.concat([shares_of(store, moments, *source) for source in sources.items()]), files.csv)
+    table = pd.concat([shares_of(store, moments, *source) for source in sources.items()], ignore_index=True)
+    value, left_out = (store.grid.projected(shares) for shares in (expected, without))
+    of_chain = table["source"] == model
+    for name, end in zip(("ci_low", "ci_high"), block_band(value, left_out, "share"), strict=True):
+        table.loc[of_chain, name] = end.ravel()
+    write_csv(table, files.csv)
 
 
 def draw_moments(

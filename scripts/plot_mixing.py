@@ -17,7 +17,7 @@ from bedchain.figures.model_styles import ModelStyle, label, model_styles
 from bedchain.figures.style import DOUBLE_COLUMN_IN, FigureFiles, figure_style
 from bedchain.files import CSV_DIGITS, write_csv
 from bedchain.stage import run_stage
-from bedchain.uncertainty.bands import band
+from bedchain.uncertainty.bands import block_band
 
 PANELS = {
     "radial": {"left": "left half", "right": "right half"},
@@ -89,7 +89,7 @@ def plot_mixing(
 
 
 def bands(chains: dict[str, Path]) -> pd.DataFrame:
-    """Bands that hold 95 % of the curves of chains learned again on blocks of the learning window.
+    """95 % bands of the chains' curves, from chains learned without each block of the learning window.
 
     Parameters
     ----------
@@ -99,12 +99,12 @@ def bands(chains: dict[str, Path]) -> pd.DataFrame:
     Returns
     -------
     DataFrame
-        time_s, source, group, band_low_1, band_high_1.
+        time_s, source, group, band_low_1, band_high_1; NaN where the learning window is too short for a band.
     """
     parts = []
     for model, path in chains.items():
         chain = read_arrays(path)
-        low, high = band(chain["remaining_replicates"])
+        low, high = block_band(chain["remaining"], chain["remaining_left_out"], "share")
         for column, group in enumerate(chain["groups"]):
             parts.append(
                 pd.DataFrame(

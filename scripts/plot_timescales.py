@@ -27,7 +27,7 @@ MARKERS = ("o", "s", "^")
 SHIFT = 0.06
 NOTE = """The three slowest processes are ranked anew at each lag: marks of one rank need not be the same
 process, so no line joins them. {bands}"""
-BANDS = "Without a bar: the 95 % band was not computed, the matrix is too large to be learned many times."
+BANDS = "Without a bar: the learning window is too short for a 95 % band."
 UNSEEN_COLOUR, LEGEND_COLOUR = "#d9d9d9", "#444444"
 TICKS_S = (0.01, 0.02, 0.05, 0.1, 0.2, 0.5, 1, 2, 5, 10, 20)
 
@@ -61,7 +61,9 @@ def plot_timescales(diagnostics: Path, files: FigureFiles, colours: dict[str, st
             1, len(colours), figsize=(DOUBLE_COLUMN_IN, 2.8), sharex=True, sharey=True, squeeze=False
         )
         ends = np.array([lags.min() / 1.25, lags.max() * 1.25])
-        ends_s = (0.5 * shown[["timescale_s", "ci_low_s"]].min().min(), 1.3 * shown["ci_high_s"].max())
+        drawn = shown[["timescale_s", "ci_low_s", "ci_high_s"]]
+        # without bands the window is too short for them
+        ends_s = (0.5 * drawn.min().min(), 1.3 * drawn.max().max())
         for axes, (model, colour) in zip(panels[0], colours.items(), strict=True):
             _draw_model(axes, shown[shown["source"] == model], colour)
             axes.fill_between(ends, ends_s[0] * 1e-3, ends, color=UNSEEN_COLOUR, lw=0, zorder=0)
@@ -113,7 +115,6 @@ def _draw_model(axes: Axes, table: pd.DataFrame, colour: str) -> None:
     for number, marker in enumerate(MARKERS):
         rows = table[table["process"] == number + 1].sort_values("lag_s")
         lag, scale = rows["lag_s"] * (1 + SHIFT * (number - 1)), rows["timescale_s"]
-        # the ends of a band need not hold the value itself: blocks that are drawn twice make a chain slower
         axes.vlines(lag, rows["ci_low_s"], rows["ci_high_s"], color=colour, lw=1.0)
         for turns, face in ((0, colour), (1, "white")):
             part = rows["turns"] == turns

@@ -2,9 +2,11 @@
 """A chain run over the comparison window, exactly and by Monte Carlo: results/<case>/chain_<model>.npz."""
 
 import json
+from collections.abc import Callable, Iterator
 from pathlib import Path
 
 import numpy as np
+from numpy.typing import NDArray
 
 from bedchain.chains import registry
 from bedchain.chains.between_steps import densities_at, mixing_by_frame
@@ -19,12 +21,10 @@ from bedchain.trajectory.frames import Window, lag_frames
 from bedchain.trajectory.realisations import open_bed
 from bedchain.trajectory.regrid import regrid
 from bedchain.trajectory.store import BedFiles
-from bedchain.uncertainty.bands import block_chains, block_length
+from bedchain.uncertainty.bands import correlation_times, kept_blocks, shortness
 
 # a moment lies on a frame up to round-off of the division
 FRAME_TOLERANCE = 1e-6
-# chains that are learned again for the error bars
-REPLICATES = 40
 
 
 def run_chain(
@@ -39,9 +39,10 @@ def run_chain(
     transitions : Path
         ``transitions_<model>.npz``.
     chain : Path
-        Gets times_s, groups, remaining and remaining_monte_carlo (n_times, 4), remaining_replicates
-        (n, n_times, 4) of chains learned again on blocks of the learning window, moments_s, batch_share and
-        batch_share_monte_carlo (n_moments, n_cells), lag_s, report (of learning, json).
+        Gets times_s, groups, remaining and remaining_monte_carlo (n_times, 4), moments_s, batch_share and
+        batch_share_monte_carlo (n_moments, n_cells), lag_s, report (of learning, json); and for the bands
+        remaining_left_out (BLOCKS, n_times, 4) and batch_share_left_out (BLOCKS, n_moments, n_cells) of
+        chains learned without each block of the learning window, none if it is too short.
     learning, comparison : Window
     splits : Splits
     batch : Batch
@@ -63,17 +64,24 @@ def run_chain(
     in_cells = run.leading_to(run.grid, which.start, lag, 0).cells[-1]
     marked = batch_of(run.grid, np.asarray(in_cells), batch.batch_height_m)[None]
     at = moment_frames(batch.moments_s, run.interval_s)
-    for_mixing, for_batch, for_blocks = np.random.default_rng(settings.seed).spawn(3)
+    for_mixing, for_batch = np.random.default_rng(settings.seed).spawn(2)
     learned_from = run.frames(model.grid, learning.frames(run.times_s))
 
     def curves(of: Chain, rng: np.random.Generator | None = None) -> np.ndarray:
         return mixing_by_frame(of, fractions, start, splits, length, rng)
 
-    def shares(rng: np.random.Generator | None = None) -> np.ndarray:
-        numbers = densities_at(model, fractions, start, marked, at, rng)[:, 0]
+    def shares(of: Chain, rng: np.random.Generator | None = None) -> np.ndarray:
+        numbers = densities_at(of, fractions, start, marked, at, rng)[:, 0]
         own = model.grid == run.grid
         return (numbers if own else regrid(numbers, model.grid, run.grid)) / marked.sum()
 
+    relearn = registry.relearner(
+        model.name, learned_from, model.grid, lag, settings.estimator, **settings.options
+    )
+    without: tuple[list[np.ndarray], list[np.ndarray]] = ([], [])
+    for other in left_out(relearn, correlation_times(learned_from, splits.split_x_m, lag)):
+        without[0].append(curves(other))
+        without[1].append(shares(other))
     write_arrays(
         chain,
         {
@@ -81,25 +89,26 @@ def run_chain(
             "groups": np.array([group for _, group in GROUPS]),
             "remaining": curves(model),
             "remaining_monte_carlo": curves(model, for_mixing),
-            "remaining_replicates": block_chains(
-                registry.relearner(
-                    model.name, learned_from, model.grid, lag, settings.estimator, **settings.options
-                ),
-                curves,
-                len(learned_from.times_s) - lag,
-                block_length(learned_from, splits.split_x_m, lag),
-                REPLICATES,
-                for_blocks,
-            ),
+            "remaining_left_out": np.reshape(without[0], (-1, length + 1, len(GROUPS))),
             "moments_s": np.array(batch.moments_s, float),
-            "batch_share": shares(),
-            "batch_share_monte_carlo": shares(for_batch),
+            "batch_share": shares(model),
+            "batch_share_monte_carlo": shares(model, for_batch),
+            "batch_share_left_out": np.reshape(without[1], (-1, len(at), run.grid.n_cells)),
             "lag_s": np.array(model.lag_s),
             "report": np.array(json.dumps(model.report)),
         },
     )
     LOG.info("%s chain: %d frames, steps of %g s, a batch of %d particles", model.name, length, model.lag_s,
              marked.sum())  # fmt: skip
+
+
+def left_out(relearn: Callable[[NDArray[np.bool_]], Chain], times: float) -> Iterator[Chain]:
+    """Chains learned without each block of a window of so many correlation times, none if it is too short."""
+    if short := shortness(times):
+        LOG.warning("the learning window's %s", short)
+        return
+    for kept in kept_blocks():
+        yield relearn(kept)
 
 
 def moment_frames(moments_s: list[float], interval_s: float) -> list[int]:

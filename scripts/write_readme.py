@@ -60,6 +60,7 @@ OF_STUDY: dict[str, tuple[str, str, Builder]] = {
         "scripts/tables/benchmark_core.csv",
         study_tables.benchmark,
     ),
+    "bands": ("results/bands/coverage.csv", "scripts/tables/coverage.csv", study_tables.coverage),
 }
 # picture in .github -> the figure that it is a smaller copy of
 PICTURES = {

@@ -23,9 +23,7 @@ from bedchain.measures.mixing import GROUPS, remaining_from_positions
 from bedchain.trajectory.frames import Window, lag_frames
 from bedchain.trajectory.grid import Grid
 from bedchain.trajectory.realisations import Realisation
-from bedchain.uncertainty.bands import band, block_chains, block_length, block_weights
-
-REPLICATES, SEED = 100, 11
+from bedchain.uncertainty.bands import block_band, correlation_times, kept_blocks, kept_steps
 
 
 @dataclass(frozen=True)
@@ -148,13 +146,13 @@ class Bed:
             return some.mixing(start, *splits, steps)
 
         learn = registry.relearner(chain.name, frames, self.grid, lag)
-        block, rng = block_length(frames, splits[0], lag), np.random.default_rng(SEED)
-        samples = block_chains(learn, curves_of, len(frames.times_s) - lag, block, REPLICATES, rng)
-        low, high = band(samples)
+        value, times_held = curves_of(chain), correlation_times(frames, splits[0], lag)
+        left_out = np.stack([curves_of(learn(kept)) for kept in kept_blocks()])
+        low, high = block_band(value, left_out, "share", times_held)
         seen = self.run.values[which][::lag][: steps + 1]
         curves = (
             remaining_from_positions(seen[:, 0], seen[:, 1], *splits),
-            chain.mixing(start, *splits, steps),
+            value,
         )
         times = self.run.times_s[which][::lag][: steps + 1]
         return pd.concat(
@@ -189,18 +187,16 @@ class Bed:
         """
         lag = self._lag(lag_s)
         frames = self.run.frames(self.grid, Window(start_s, end_s).frames(self.run.times_s))
-        steps, rng = len(frames.times_s) - lag, np.random.default_rng(SEED)
+        steps = len(frames.times_s) - lag
 
         def chain_of(weights: NDArray[np.int64] | None = None) -> OpenChain:
             counts = count_moves(frames.cells, self.grid.n_cells, lag, step_weights=weights)
             return open_chain([counts], lag * self.run.interval_s)
 
-        samples = [
-            chain_of(block_weights(steps, max(lag, steps // 10), rng)).residence()[0]
-            for _ in range(REPLICATES)
-        ]
-        low, high = band(np.array(samples))
-        return chain_of().residence()[0], float(low), float(high)
+        time_s = chain_of().residence()[0]
+        left_out = [chain_of(kept_steps(kept, steps)).residence()[0] for kept in kept_blocks()]
+        low, high = block_band(time_s, np.array(left_out), "positive")
+        return time_s, float(low), float(high)
 
     def _lag(self, lag_s: float | None) -> int:
         return 1 if lag_s is None else lag_frames(lag_s, self.run.interval_s)

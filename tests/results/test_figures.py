@@ -13,7 +13,7 @@ from bedchain.case.schema import load_schema
 
 NAMES = ["fig1_cells", "fig2_cost", "fig3_static", "fig4_dynamic", "fig5a_radial", "fig5b_axial", "snapshot"]
 NAMES += ["fig_difference", "fig_chapman_kolmogorov", "fig_timescales", "fig_stationarity", "fig_discussion"]
-NAMES += ["fig_choice"]
+NAMES += ["fig_choice", "fig_modes"]
 # a page that failed to draw has a frame at most
 LEAST_INK = 0.01
 

@@ -23,6 +23,7 @@ from made.synthetic_bed import write_run
 from parse_dumps import parse_dumps
 from plot_chapman_kolmogorov import plot_chapman_kolmogorov
 from plot_difference import plot_difference
+from plot_modes import plot_modes
 from plot_timescales import plot_timescales, processes
 
 # 6 x 4 cells of 1 cm; along each axis a particle stays with 1/2 and moves with 1/4 each way, as walls allow
@@ -64,12 +65,13 @@ def walk(tmp_path_factory):
         files,
         list(transitions.values()),
         path,
+        folder / "modes.csv",
         LEARN,
         COMPARE,
         Splits(0.03, 0.02),
         ModelSettings("pooled", 3),
     )
-    return SimpleNamespace(path=path, table=pd.read_csv(path))
+    return SimpleNamespace(path=path, table=pd.read_csv(path), modes=folder / "modes.csv", files=files)
 
 
 def value(walk, quantity, source, **where):
@@ -84,7 +86,7 @@ def value(walk, quantity, source, **where):
 def test_the_table_has_its_columns_units_and_no_gaps(walk):
     assert list(walk.table.columns) == list(HEADER)
     assert walk.table[["quantity", "source", "value", "unit"]].notna().all().all()
-    assert set(walk.table["unit"]) == {"1", "s", "m2/s"}
+    assert set(walk.table["unit"]) == {"1", "s", "m2/s", "1/s"}
     assert not walk.table.duplicated(list(HEADER[:6])).any()
 
 
@@ -195,11 +197,25 @@ def test_figures_of_models_without_rows_are_refused(walk, tmp_path):
     assert list(tmp_path.iterdir()) == []
 
 
+def test_modes_are_drawn_with_the_cosine_of_the_walk(walk, tmp_path):
+    plot_modes(walk.modes, walk.files.cells, outputs(tmp_path, "modes"))
+    table = assert_drawn(tmp_path, "modes")
+    for model in MODELS:
+        rows = table.query("source == @model and quantity == 'excess' and part == 1").sort_values("cell")
+        across = rows["value"].to_numpy().reshape(UP, ACROSS).mean(axis=0)
+        cosine = np.cos(np.pi * (np.arange(ACROSS) + 0.5) / ACROSS)
+        assert abs(np.corrcoef(across, cosine)[0, 1]) > 0.98
+        # nothing circulates: what is left is chance
+        assert value(walk, "net_flux_share", model) < 3 * SAMPLING
+        assert value(walk, "mode_held_share", model, part="1") > 0.5
+
+
 def test_a_real_roll_is_not_followed_by_the_static_chain_of_short_steps(bed, tmp_path):
     path = tmp_path / "diagnostics.csv"
     diagnose_chains(
-        bed.files, list(bed.transitions.values()), path, LEARN, COMPARE, SPLITS, ModelSettings("pooled", 3)
-    )
+        bed.files, list(bed.transitions.values()), path, tmp_path / "modes.csv", LEARN, COMPARE, SPLITS,
+        ModelSettings("pooled", 3),
+    )  # fmt: skip
     table = pd.read_csv(path).query("quantity == 'chapman_kolmogorov_rms' and part == 'low'")
     error = table.set_index(["source", "lag_s"])["value"]
     # cells of 1 cm blur the rolls at each step: the more steps, the worse; the dynamic chain blurs less

@@ -12,6 +12,7 @@ from bedchain.chains.markov_chain import MarkovChain
 from bedchain.chains.registry import ModelSettings
 from bedchain.comparison.curves import ChainFiles
 from bedchain.measures.batch import Batch
+from bedchain.uncertainty import bands
 from build_transitions import build_transitions
 from compare_mixing import SolverSeries, Tables, compare_mixing
 from diagnose_chains import diagnose_chains
@@ -43,13 +44,13 @@ STEPS = 40
 
 @pytest.fixture(scope="module")
 def chains(bed, tmp_path_factory):
-    """Transitions and chains of all models, by name, with two replicates each."""
+    """Transitions and chains of all models, by name."""
     folder = tmp_path_factory.mktemp("models")
     made = {
         kind: {name: folder / f"{kind}_{name}.npz" for name in NAMES} for kind in ("transitions", "chain")
     }
     with pytest.MonkeyPatch.context() as patched:
-        patched.setattr(run_chain, "REPLICATES", 2)
+        patched.setattr(bands, "FEWEST_CORRELATION_TIMES", 0)
         for name in NAMES:
             path, options = made["transitions"][name], OPTIONS.get(name, {})
             build_transitions(bed.files, path, name, "pooled", 0.025, LEARN, options)
@@ -66,8 +67,9 @@ def test_a_model_is_learned_and_run(chains, name):
     with np.load(chains["chain"][name]) as chain:
         assert chain["remaining"].shape == (STEPS + 1, 4)
         assert ((chain["remaining"] >= 0) & (chain["remaining"] <= 1)).all()
-        assert chain["remaining_replicates"].shape == (2, STEPS + 1, 4)
-        assert (chain["remaining_replicates"] != chain["remaining"]).any()
+        assert chain["remaining_left_out"].shape == (5, STEPS + 1, 4)
+        assert (chain["remaining_left_out"] != chain["remaining"]).any()
+        assert chain["batch_share_left_out"].sum(axis=2) == pytest.approx(1)
         assert chain["batch_share"].shape == (len(MOMENTS), COLUMNS * ROWS)
         assert chain["batch_share"].sum(axis=1) == pytest.approx(1)
 
@@ -113,8 +115,9 @@ def test_timescales_are_given_of_models_with_a_matrix(bed, chains, tmp_path):
     names = ("velocity_class", "jump", "recurrence")
     few = {name: chains["transitions"][name] for name in names}
     diagnose_chains(
-        bed.files, list(few.values()), path, LEARN, COMPARE, SPLITS, ModelSettings("pooled", 3, OPTIONS)
-    )
+        bed.files, list(few.values()), path, tmp_path / "modes.csv", LEARN, COMPARE, SPLITS,
+        ModelSettings("pooled", 3, OPTIONS),
+    )  # fmt: skip
     table = pd.read_csv(path)
     assert isinstance(registry.load(few["velocity_class"]), MarkovChain)
     assert set(table.query("quantity == 'implied_timescale'")["source"]) == {"velocity_class"}

@@ -109,6 +109,8 @@ def count_pairs(
     n_cells: int,
     lag: int = 1,
     step_weights: NDArray[np.int64] | None = None,
+    first: int = 0,
+    last: int | None = None,
 ) -> Counts:
     """Count the moves to k of particles now in j that were in i one lag ago (Zhuang et al. 2015, Eq. 2).
 
@@ -124,13 +126,13 @@ def count_pairs(
     DataError
         As `count_moves`.
     """
-    starts, weights = step_starts(cells, lag, 2, step_weights=step_weights)
+    starts, weights = step_starts(cells, lag, 2, first, last, step_weights)
     pairs, table = hash_counts.empty_table(np.int64, 1), hash_counts.empty_table()
     occupied, n_states = np.zeros(0, np.int64), n_cells + 1
     for parts, chunk_weights in chunks(cells, n_cells, starts, weights, (0, lag, 2 * lag)):
-        first, now, then = _set_apart(parts, n_cells)
+        before, now, after = _set_apart(parts, n_cells)
         pairs, occupied, table = hash_counts.tally_pairs(
-            first, now, then, chunk_weights, n_states, pairs, occupied, table
+            before, now, after, chunk_weights, n_states, pairs, occupied, table
         )
     pair_keys, numbers = hash_counts.table_entries(pairs)
     pair_keys, inside = _inside(pair_keys, n_cells)

@@ -6,12 +6,15 @@ rising (previous, present) cell, followed by one state for each cell: particles 
 in the static chain. A move into a pair from which no move was counted leads to the state of its cell.
 """
 
+from collections.abc import Callable
+
 import numpy as np
 from numpy.typing import NDArray
 from scipy import sparse
 
 from bedchain.chains.classes import traps
 from bedchain.chains.counting import Counts, count_moves, count_pairs
+from bedchain.chains.counting_by_block import count_move_blocks, count_pair_blocks
 from bedchain.chains.estimators import ROUND_OFF, estimated_rows, leak, transition_matrix
 from bedchain.chains.markov_chain import MarkovChain
 from bedchain.errors import DataError
@@ -31,6 +34,15 @@ def learn(
     single = count_moves(cells, grid.n_cells, lag, step_weights=step_weights)
     double = count_pairs(cells, grid.n_cells, lag, step_weights=step_weights)
     return from_counts(double, single, grid, lag * frames.interval_s, estimator)
+
+
+def relearner(
+    frames: Frames, grid: Grid, lag: int = 1, estimator: str = "pooled"
+) -> Callable[[NDArray[np.bool_]], MarkovChain]:
+    """See `registry.relearner`; moves are counted only once."""
+    single = count_move_blocks(frames.cells, grid.n_cells, lag)
+    double, lag_s = count_pair_blocks(frames.cells, grid.n_cells, lag), lag * frames.interval_s
+    return lambda kept: from_counts(double.of(kept), single.of(kept), grid, lag_s, estimator)
 
 
 def from_counts(

@@ -117,6 +117,12 @@ class MarkovChain:
         place = np.minimum(np.searchsorted(self.state_keys, keys), self.state_keys.size - 1)
         return np.where(self.state_keys[place] == keys, place, unknown).astype(np.int32)
 
+    def places_of(self, other: "MarkovChain") -> NDArray[np.int64]:
+        """State of this chain for each state of one learned from a part of the same window, (n_states,)."""
+        keyed = np.searchsorted(self.state_keys, other.state_keys)
+        n_rest = other.matrix.shape[0] - other.state_keys.size
+        return np.concatenate((keyed, self.fallback + np.arange(n_rest)))
+
     def mixing(
         self,
         start: Frames,

@@ -4,8 +4,9 @@
 import numpy as np
 from numpy.typing import NDArray
 
+from bedchain.chains.first_passage import first_passage_steps
 from bedchain.chains.markov_chain import MarkovChain
-from bedchain.chains.matrix_analysis import first_passage_steps, long_run_density
+from bedchain.chains.matrix_analysis import long_run_density
 from bedchain.trajectory.grid import Grid
 
 

@@ -26,6 +26,7 @@ from bedchain.chains.velocity_binning import measured
 from bedchain.errors import DataError
 from bedchain.trajectory.frames import Frames
 from bedchain.trajectory.grid import Grid
+from bedchain.uncertainty.bands import kept_steps
 
 ORDERS = ("recurrence", "shuffled", "replay")
 # Paths averaged for expected values: tracers share a path, so that more tracers cannot replace more paths.
@@ -217,13 +218,21 @@ def learn(
         Its report holds the mean distance of the frames of a jump and of a step, over that of all frames.
     """
     _, weights = step_starts(frames.cells, lag, step_weights=step_weights)
-    return relearner(frames, grid, lag, estimator, **settings)(weights)
+    return _weighted(frames, grid, lag, **settings)(weights)
 
 
 def relearner(
     frames: Frames, grid: Grid, lag: int = 1, estimator: str = "pooled", **settings: Any
+) -> Callable[[NDArray[np.bool_]], RecurrenceChain]:
+    """See `registry.relearner`; frames are compared only once. Arguments as `learn`."""
+    from_weights, n_steps = _weighted(frames, grid, lag, **settings), len(frames.times_s) - lag
+    return lambda kept: from_weights(kept_steps(kept, n_steps))
+
+
+def _weighted(
+    frames: Frames, grid: Grid, lag: int, **settings: Any
 ) -> Callable[[NDArray[np.int64]], RecurrenceChain]:
-    """`learn` as a function of ``step_weights``; frames are compared only once. Arguments as `learn`."""
+    """`learn` as a function of ``step_weights``."""
     checked = RecurrenceSettings(**settings)
     fields = frame_fields(frames, grid, checked.coarse_m)
     places = np.stack([np.asarray(frames.x_m, np.float32), np.asarray(frames.z_m, np.float32)])

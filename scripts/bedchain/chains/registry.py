@@ -23,6 +23,7 @@ from bedchain.errors import DataError, make_again
 from bedchain.files import write_arrays
 from bedchain.trajectory.frames import Frames
 from bedchain.trajectory.grid import Grid
+from bedchain.uncertainty.bands import kept_steps
 
 # Each takes frames, a grid and the keyword arguments of `learn`.
 LEARNERS: dict[str, Callable[..., Chain]] = {
@@ -43,9 +44,10 @@ READERS: dict[str, Callable[[dict[str, NDArray[Any]]], Chain]] = {
 # Models that follow each particle through the window.
 WHOLE = {"jump", "recurrence"}
 
-# For models that learn faster from other weights of the same steps.
-RELEARNERS: dict[str, Callable[..., Callable[[NDArray[np.int64]], Chain]]] = {
+# For models that count once and learn faster without some blocks of the window.
+RELEARNERS: dict[str, Callable[..., Callable[[NDArray[np.bool_]], Chain]]] = {
     "static": static.relearner,
+    "dynamic": dynamic.relearner,
     "velocity_class": velocity_class.relearner,
     "recurrence": recurrence.relearner,
 }
@@ -145,20 +147,22 @@ def learn(
 
 def relearner(
     name: str, frames: Frames, grid: Grid, lag: int = 1, estimator: str = "pooled", **options: Any
-) -> Callable[[NDArray[np.int64]], Chain]:
-    """`learn` as a function of ``step_weights``, for `bands.block_chains`; arguments as `learn`.
+) -> Callable[[NDArray[np.bool_]], Chain]:
+    """`learn` without some of the `bands.BLOCKS` equal blocks of the window; arguments as `learn`.
 
-    Models in `RELEARNERS` count once for all replicates.
+    Models in `RELEARNERS` count once, block by block.
 
     Returns
     -------
     callable
-        From (n_frames - lag,) int weights to a `Chain`.
+        From the blocks that are kept, (BLOCKS,) bool such as a row of `bands.kept_blocks`, to a `Chain`. A
+        step belongs to the block that it starts in.
     """
     name = LEARNED_AS.get(name, name)
     if name in RELEARNERS:
         return RELEARNERS[name](frames, grid, lag=lag, estimator=estimator, **options)
-    return lambda weights: learn(name, frames, grid, lag, estimator, weights, **options)
+    n_steps = len(frames.times_s) - lag
+    return lambda kept: learn(name, frames, grid, lag, estimator, kept_steps(kept, n_steps), **options)
 
 
 def save(chain: Chain, path: Path | str, fractions: Fractions | None = None) -> None:

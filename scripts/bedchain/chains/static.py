@@ -8,7 +8,7 @@ from numpy.typing import NDArray
 from scipy import sparse
 
 from bedchain.chains.counting import Counts, count_moves
-from bedchain.chains.counting_by_step import count_steps
+from bedchain.chains.counting_by_block import count_move_blocks
 from bedchain.chains.estimators import (
     ESTIMATORS,
     estimated_rows,
@@ -38,11 +38,10 @@ def learn(
 
 def relearner(
     frames: Frames, grid: Grid, lag: int = 1, estimator: str = "pooled"
-) -> Callable[[NDArray[np.int64]], MarkovChain]:
-    """`learn` as a function of ``step_weights``; moves are counted only once. Arguments as `learn`."""
-    steps = count_steps(frames.cells, grid.n_cells, lag)
-    lag_s = lag * frames.interval_s
-    return lambda weights: from_counts(steps.weighted(weights), grid, lag_s, estimator)
+) -> Callable[[NDArray[np.bool_]], MarkovChain]:
+    """See `registry.relearner`; moves are counted only once."""
+    blocks, lag_s = count_move_blocks(frames.cells, grid.n_cells, lag), lag * frames.interval_s
+    return lambda kept: from_counts(blocks.of(kept), grid, lag_s, estimator)
 
 
 def from_counts(counts: Counts, grid: Grid, lag_s: float, estimator: str = "pooled") -> MarkovChain:

@@ -11,6 +11,7 @@ as any particle of their cell does, so that the matrix stays sparse and conserva
 
 from collections.abc import Callable, Sequence
 from dataclasses import replace
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -18,6 +19,7 @@ from scipy import sparse
 
 from bedchain.chains.classes import open_classes
 from bedchain.chains.counting import Counts, count_moves, step_starts
+from bedchain.chains.counting_by_block import count_move_blocks
 from bedchain.chains.estimators import leak, transition_matrix, with_sorted_rows
 from bedchain.chains.markov_chain import MarkovChain
 from bedchain.chains.velocity_binning import VelocityClasses, measured, quantile_classes
@@ -59,7 +61,9 @@ def learn(
     MarkovChain
     """
     _, weights = step_starts(frames.cells, lag, step_weights=step_weights)
-    return relearner(frames, grid, lag, estimator, classes, fewest_samples, earlier_s)(weights)
+    window = _Window.of(frames, grid, lag, classes, earlier_s)
+    counts = count_moves(window.states, window.n_states, lag, step_weights=weights[window.classes.back :])
+    return window.chain(counts, grid, estimator, fewest_samples)
 
 
 def relearner(
@@ -70,24 +74,37 @@ def relearner(
     classes: Sequence[int] = CLASSES,
     fewest_samples: int = FEWEST_SAMPLES,
     earlier_s: float = 0.0,
-) -> Callable[[NDArray[np.int64]], MarkovChain]:
-    """`learn` as a function of ``step_weights``; states are computed only once. Arguments as `learn`."""
-    back = lag_frames(earlier_s, frames.interval_s) if earlier_s else 0
-    if len(frames.times_s) - lag <= back:
-        raise DataError(
-            f"{len(frames.times_s)} frames hold no step of {lag} frames after {back}: "
-            "widen the window or cut earlier_s"
-        )
-    edges, states = _states(frames, grid, classes, back)
-    n_states, lag_s = grid.n_cells * edges.number, lag * frames.interval_s
-    note = {"velocities_from_differences_1": float(not measured(frames))}
+) -> Callable[[NDArray[np.bool_]], MarkovChain]:
+    """See `registry.relearner`; states are computed and moves are counted only once. Arguments as `learn`."""
+    window = _Window.of(frames, grid, lag, classes, earlier_s)
+    blocks = count_move_blocks(window.states, window.n_states, lag, window.classes.back)
+    return lambda kept: window.chain(blocks.of(kept), grid, estimator, fewest_samples)
 
-    def from_weights(weights: NDArray[np.int64]) -> MarkovChain:
-        counts = count_moves(states, n_states, lag, step_weights=weights[back:])
-        chain = from_counts(counts, edges, grid, lag_s, estimator, fewest_samples)
-        return replace(chain, report=chain.report | note)
 
-    return from_weights
+class _Window(NamedTuple):
+    """States of the particles of a learning window, (n_frames - back, n_particles), and their classes."""
+
+    states: NDArray[np.int32]
+    n_states: int
+    classes: VelocityClasses
+    lag_s: float
+    note: dict[str, float]
+
+    @classmethod
+    def of(cls, frames: Frames, grid: Grid, lag: int, classes: Sequence[int], earlier_s: float) -> "_Window":
+        back = lag_frames(earlier_s, frames.interval_s) if earlier_s else 0
+        if len(frames.times_s) - lag <= back:
+            raise DataError(
+                f"{len(frames.times_s)} frames hold no step of {lag} frames after {back}: "
+                "widen the window or cut earlier_s"
+            )
+        edges, states = _states(frames, grid, classes, back)
+        note = {"velocities_from_differences_1": float(not measured(frames))}
+        return cls(states, grid.n_cells * edges.number, edges, lag * frames.interval_s, note)
+
+    def chain(self, counts: Counts, grid: Grid, estimator: str, fewest_samples: int) -> MarkovChain:
+        chain = from_counts(counts, self.classes, grid, self.lag_s, estimator, fewest_samples)
+        return replace(chain, report=chain.report | self.note)
 
 
 def from_counts(

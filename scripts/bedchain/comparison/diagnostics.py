@@ -11,7 +11,6 @@ from bedchain.chains import dynamic, static
 from bedchain.chains.counting import count_moves, count_pairs
 from bedchain.chains.estimators import ESTIMATORS, estimated_rows, visited_density
 from bedchain.chains.markov_chain import MarkovChain
-from bedchain.chains.matrix_analysis import mixing_time
 from bedchain.chains.passage import arrived, passage_time, residence_in_cells
 from bedchain.comparison.metrics import Metric, metric
 from bedchain.measures.batch import total_variation
@@ -19,6 +18,7 @@ from bedchain.measures.dispersion import dispersion_by_height
 from bedchain.measures.mixing import lacey_index
 from bedchain.trajectory.frames import Frames, Lag
 from bedchain.trajectory.grid import Grid
+from bedchain.uncertainty.bands import Array, block_band
 
 # part: a group, a direction, an estimator or a number
 COLUMNS = (
@@ -27,6 +27,11 @@ COLUMNS = (
 )
 # layers with fewer displacements have no dispersion coefficient
 FEWEST_DISPLACEMENTS = 100
+# quantities of `times_of`, and their parts
+TIMES = (
+    *(("residence_time", part) for part in ("mean", "shortest", "longest")),
+    ("first_passage_time", ""),
+)
 # marked groups of Lacey's index, by direction
 MARKED = {"radial": 0, "axial": 2}
 
@@ -77,8 +82,8 @@ def estimator_rows(frames: Frames, grid: Grid, lag: int, models: Sequence[str]) 
     ]
 
 
-def time_rows(chain: MarkovChain, start: NDArray[np.float64], least_share: float, top: int) -> list[Metric]:
-    """Mixing time, residence times and passage time from the bottom to the top.
+def times_of(chain: MarkovChain, start: NDArray[np.float64], least_share: float, top: int) -> Array:
+    """Residence times and passage time from the bottom to the top.
 
     Parameters
     ----------
@@ -92,26 +97,49 @@ def time_rows(chain: MarkovChain, start: NDArray[np.float64], least_share: float
 
     Returns
     -------
-    list of dict
-        mixing_time; residence_time (part: mean over the particles, shortest and longest of the cells), left
-        out if no cell is ever left; first_passage_time, left out if some particles never reach the top.
+    (4,) array
+        In the order of `TIMES` [s]; NaN where no cell is ever left, and where some particles never reach the
+        top.
     """
     residence, density = residence_in_cells(chain, start)
-    where = {"lag_s": chain.lag_s}
-    rows = [metric("mixing_time", chain.name, mixing_time(chain.matrix, chain.lag_s), "s", **where)]
     usual = (density >= least_share) & np.isfinite(residence)
+    times = np.full(len(TIMES), np.nan)
     if usual.any():
-        mean = float((residence[usual] * density[usual]).sum() / density[usual].sum())
-        times = {"mean": mean, "shortest": residence[usual].min(), "longest": residence[usual].max()}
-        rows += [
-            metric("residence_time", chain.name, time, "s", part=part, **where)
-            for part, time in times.items()
-        ]
+        mean = (residence[usual] * density[usual]).sum() / density[usual].sum()
+        times[:3] = mean, residence[usual].min(), residence[usual].max()
     passage = passage_time(chain, start, top)
-    if np.isfinite(passage) and chain.grid.rows_are_heights:
-        height = top * chain.grid.cell_height_m
-        rows.append(metric("first_passage_time", chain.name, passage, "s", height_m=height, **where))
-    return rows
+    times[3] = passage if np.isfinite(passage) and chain.grid.rows_are_heights else np.nan
+    return times
+
+
+def time_rows(source: str, lag_s: float, height_m: float, times: Array, left_out: Array) -> list[Metric]:
+    """Rows of residence and passage times that there are, with their bands.
+
+    Parameters
+    ----------
+    source : str
+    lag_s : float
+        Of the chain [s].
+    height_m : float
+        Of the row to reach [m].
+    times : (4,) array
+        From `times_of` [s].
+    left_out : (BLOCKS, 4) array
+        Of chains learned without each block of time; none in a window too short for a band [s].
+
+    Returns
+    -------
+    list of dict
+        residence_time (part: mean over the particles, shortest and longest of the cells),
+        first_passage_time.
+    """
+    bands = zip(TIMES, times, *block_band(times, left_out, "positive"), strict=True)
+    return [
+        metric(quantity, source, time, "s", *band, lag_s=lag_s)
+        | ({"part": part} if part else {"height_m": height_m})
+        for (quantity, part), time, *band in bands
+        if np.isfinite(time)
+    ]
 
 
 def arrival_row(source: str, frames: Frames, grid: Grid, top: int) -> Metric:

@@ -10,7 +10,6 @@ from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy import sparse
 
 from bedchain.chains import propagate
 from bedchain.chains.markov_chain import MarkovChain
@@ -86,7 +85,7 @@ def counted(sides: Sides, weights: NDArray[np.int64] | None = None) -> NDArray[n
     ----------
     sides : Sides
     weights : (n_starts,) int array, optional
-        How many times each of the first frames counts as a start (bootstrap); later frames count 0 times.
+        How many times each of the first frames counts as a start; later frames count 0 times.
 
     Returns
     -------
@@ -111,15 +110,15 @@ class Starts:
     ----------
     symbols : (history, n_pasts) int32 array
         Symbols (`MarkovChain.symbols`) of each past, one lag apart, oldest first.
-    number : tuple of 4 (n_starts, n_pasts) csr_array
-        Particles of each group with each past in each frame at which a step starts [1].
+    number : (4, n_blocks, n_pasts) int64 array
+        Particles of each group with each past at the starts of the steps, summed over each block of time [1].
     """
 
     symbols: NDArray[np.int32]
-    number: tuple[sparse.csr_array, ...]
+    number: NDArray[np.int64]
 
 
-def count_starts(frames: Frames, chain: MarkovChain, sides: Sides) -> Starts:
+def count_starts(frames: Frames, chain: MarkovChain, sides: Sides, edges: NDArray[np.integer]) -> Starts:
     """Distinct pasts of the particles of a window, in the symbols of a chain.
 
     Parameters
@@ -129,6 +128,8 @@ def count_starts(frames: Frames, chain: MarkovChain, sides: Sides) -> Starts:
     chain : MarkovChain
         Its lag, history and symbols are used, not its probabilities.
     sides : Sides
+    edges : (n_blocks + 1,) int array
+        First frame of each block of starts, and the end.
 
     Returns
     -------
@@ -142,8 +143,18 @@ def count_starts(frames: Frames, chain: MarkovChain, sides: Sides) -> Starts:
     for ago in range(span, -1, -lag):
         keys = keys * base + frame_symbols[span - ago : n_starts - chain.back - ago]
     pasts, ranks = ranked(keys, base**history)
-    groups = np.moveaxis(sides.marked[before:n_starts], 1, 0)
-    number = tuple(_by_frame(ranks, group, before, pasts.size) for group in groups)
+    # left or right, and low or up: four quarters, of which each group has two
+    quarter = 2 * sides.marked[before:n_starts, 0].astype(np.int8) + sides.marked[before:n_starts, 2]
+    place = 4 * ranks.astype(np.int64) + quarter
+    ends = np.maximum(np.asarray(edges) - before, 0)
+    held = np.stack(
+        [
+            np.bincount(place[first:last].ravel(), minlength=4 * pasts.size).reshape(-1, 4).T
+            for first, last in zip(ends[:-1], ends[1:], strict=True)
+        ],
+        axis=1,
+    )
+    number = np.stack([held[2] + held[3], held[0] + held[1], held[1] + held[3], held[0] + held[2]])
     symbols = np.array([pasts // base**ago % base for ago in range(history)][::-1], np.int32)
     return Starts(symbols, number)
 
@@ -172,23 +183,8 @@ def ranked(keys: NDArray[np.int64], n_keys: int) -> tuple[NDArray[np.int64], NDA
     return np.flatnonzero(occurs), rank[keys]
 
 
-def _by_frame(
-    ranks: NDArray[np.integer], group: NDArray[np.bool_], before: int, n_pasts: int
-) -> sparse.csr_array:
-    """Particles of a group with each past in each frame, after ``before`` empty frames."""
-    places, numbers = [np.zeros(0, np.int64)], [np.zeros(0, np.int64)]
-    for now, marked in zip(ranks, group, strict=True):
-        held = np.bincount(now[marked], minlength=n_pasts)
-        places.append(np.flatnonzero(held))
-        numbers.append(held[places[-1]])
-    ends = np.cumsum([0] * before + [place.size for place in places])
-    return sparse.csr_array(
-        (np.concatenate(numbers), np.concatenate(places), ends), shape=(before + len(ranks), n_pasts)
-    )
-
-
 def propagated(
-    chain: MarkovChain, starts: Starts, sides: Sides, weights: NDArray[np.int64]
+    chain: MarkovChain, starts: Starts, sides: Sides, kept: NDArray[np.integer] | NDArray[np.bool_]
 ) -> tuple[NDArray[np.int64], NDArray[np.float64]]:
     """Expected share of each group that is on its side after steps of a chain from all starts.
 
@@ -199,8 +195,8 @@ def propagated(
     starts : Starts
         Of a chain of the same lag, history and symbols.
     sides : Sides
-    weights : (n_starts,) int array
-        How many times each frame counts as a start (bootstrap).
+    kept : (n_blocks,) array
+        Blocks of starts that count: 1 or 0, or how many times.
 
     Returns
     -------
@@ -213,8 +209,7 @@ def propagated(
     steps = sides.gaps[rows] // chain.lag
     shares = mixing.side_shares(chain.grid, sides.split_x_m, sides.split_z_m)[:, chain.cell_of_state]
     states = chain.states_of(starts.symbols)
-    begin = np.array(
-        [np.bincount(states, weights @ number, chain.matrix.shape[0]) for number in starts.number]
-    )
+    held = np.tensordot(np.asarray(kept, float), starts.number, axes=(0, 1))
+    begin = np.array([np.bincount(states, of_group, chain.matrix.shape[0]) for of_group in held])
     means = propagate.expected_values(chain.matrix, begin, shares, int(steps.max(initial=0)))
     return rows, means[steps][:, np.arange(4), np.arange(4)]

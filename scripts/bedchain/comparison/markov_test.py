@@ -10,24 +10,31 @@ from numpy.typing import NDArray
 
 from bedchain.chains.chain import Chain
 from bedchain.chains.markov_chain import MarkovChain
-from bedchain.chains.matrix_analysis import implied_timescales
+from bedchain.chains.modes import Modes, mixing_time, slowest_modes, timescales_s
 from bedchain.comparison.forecasts import Sides, Starts, count_starts, counted, propagated
 from bedchain.comparison.metrics import Metric, metric
 from bedchain.errors import DataError
 from bedchain.measures.mixing import GROUPS
 from bedchain.trajectory.frames import Frames
-from bedchain.uncertainty.bands import band, block_chains
+from bedchain.uncertainty.bands import (
+    BLOCKS,
+    FEWEST_CORRELATION_TIMES,
+    Array,
+    block_band,
+    block_edges,
+    kept_blocks,
+    kept_steps,
+)
 
 LOG = logging.getLogger(__name__)
 
 # number of timescales, slowest first; a pair of complex eigenvalues counts twice
 TIMESCALES = 5
-# replicates of a chain for a band; none for a matrix of more entries, which takes too long to learn and solve
-REPLICATES, MOST_ENTRIES = 40, 100_000
 # a chain of more states gets no longer lags: most pairs would have a single sample, and a lag take a minute
 MOST_STATES = 150_000
 # steps of the longest lag in a window, at least
 FEWEST_STEPS = 5
+NONE = np.zeros(0)
 
 
 @dataclass(frozen=True)
@@ -42,11 +49,35 @@ class MarkovTest:
         Share of each group on its side, by the chain at whole steps [1].
     observed : (..., n_times, 4) array
         The same, by the frames [1].
+    further : (..., n) array
+        Further numbers that follow from the chain.
     """
 
-    timescales_s: NDArray[np.float64]
-    remaining: NDArray[np.float64]
-    observed: NDArray[np.float64]
+    timescales_s: Array
+    remaining: Array
+    observed: Array
+    further: Array
+
+
+@dataclass(frozen=True)
+class Tested:
+    """Test of a chain at one lag.
+
+    Parameters
+    ----------
+    chain : MarkovChain
+    modes : Modes
+        Its slowest processes.
+    whole : MarkovTest
+    left_out : MarkovTest
+        Of chains learned without each block of time; its arrays have BLOCKS rows, or none in a window too
+        short for a band.
+    """
+
+    chain: MarkovChain
+    modes: Modes
+    whole: MarkovTest
+    left_out: MarkovTest
 
 
 def doubled_lags(lag: int, n_frames: int) -> list[int]:
@@ -59,13 +90,13 @@ def doubled_lags(lag: int, n_frames: int) -> list[int]:
 
 def check_model(
     name: str,
-    relearner: Callable[[int], Callable[[NDArray[np.int64]], Chain]],
+    relearner: Callable[[int], Callable[[NDArray[np.bool_]], Chain]],
     frames: Frames,
     sides: Sides,
     lags: Sequence[int],
-    block: int,
-    rng: np.random.Generator,
-) -> list[Metric]:
+    memory: float,
+    further: Callable[[MarkovChain], Array],
+) -> tuple[list[Metric], Tested]:
     """Implied timescales and Chapman-Kolmogorov test of one model at several lags.
 
     Parameters
@@ -73,68 +104,80 @@ def check_model(
     name : str
         Of the model.
     relearner : callable
-        From a lag, in frames, to a function that learns the model on weighted steps of the frames, such as
-        `registry.relearner` gives.
+        From a lag, in frames, to a function that learns the model without some blocks of the frames, such
+        as `registry.relearner` gives.
     frames : Frames
         The learning window.
     sides : Sides
         Of the window.
     lags : sequence of int
         Frames in a step.
-    block : int
-        Frames in a block of the bootstrap.
-    rng : numpy Generator
-        Draws the blocks.
+    memory : float
+        Correlation time of the bed [frames].
+    further : callable
+        Further numbers of the chain of the first lag, (n,).
 
     Returns
     -------
-    list of dict
+    rows : list of dict
         implied_timescale (part: 1 the slowest), remaining_propagated by time and group, and by group the
-        rms and the mean over the times of its difference from the frames, chapman_kolmogorov_rms and _mean.
+        rms and the mean over the times of its difference from the frames, chapman_kolmogorov_rms and _mean;
+        mixing_time at the first lag.
+    first : Tested
+        At the first lag.
     """
-    rows = []
+    rows: list[Metric] = []
+    first = None
     for lag in lags:
-        result, replicates, n_states = with_replicates(relearner(lag), frames, sides, lag, block, rng)
-        times = sides.gaps[sides.gaps % lag == 0] * frames.interval_s
-        rows += result_rows(name, lag * frames.interval_s, times, result, replicates)
+        times = (len(frames.times_s) - lag) / max(memory, lag)
+        result = tested(relearner(lag), frames, sides, lag, times, (lambda _: NONE) if first else further)
+        lag_s, n_states = lag * frames.interval_s, result.chain.matrix.shape[0]
+        rows += result_rows(name, lag_s, sides.gaps[sides.gaps % lag == 0] * frames.interval_s, result)
+        if result.modes.dropped.size:
+            scales = ", ".join(f"{scale:.3g} s" for scale in timescales_s(result.modes.dropped, lag_s))
+            LOG.info("%s chain, lag %g s: dropped processes of few particles, %s", name, lag_s, scales)
+        first = first or result
         if n_states > MOST_STATES:
-            LOG.info("%s chain: %d states at %g s, no longer lags", name, n_states, lag * frames.interval_s)
+            LOG.info("%s chain: %d states at %g s, no longer lags", name, n_states, lag_s)
             break
-    return rows
+    assert first is not None
+    return rows + mixing_rows(rows[:1], lags[0] * frames.interval_s), first
 
 
-def with_replicates(
-    relearn: Callable[[NDArray[np.int64]], Chain],
+def tested(
+    relearn: Callable[[NDArray[np.bool_]], Chain],
     frames: Frames,
     sides: Sides,
     lag: int,
-    block: int,
-    rng: np.random.Generator,
-) -> tuple[MarkovTest, MarkovTest, int]:
-    """Test of a chain, its replicates (none where they take too long), and the chain's number of states."""
+    times: float,
+    further: Callable[[MarkovChain], Array],
+) -> Tested:
+    """Test of a chain, and of those without each block where the window holds enough correlation times."""
     n_steps = len(frames.times_s) - lag
-    every_step = np.ones(n_steps, np.int64)
-    chain = markovian(relearn(every_step))
-    starts = count_starts(frames, chain, sides)
-    result = tested(chain, starts, sides, every_step)
-    if chain.matrix.nnz > MOST_ENTRIES:
-        samples = np.empty((0, _flat(result).size))
-    else:
-        samples = block_chains(
-            lambda weights: tested(markovian(relearn(weights)), starts, sides, weights),
-            _flat,
-            n_steps,
-            min(block, n_steps),
-            REPLICATES,
-            rng,
-        )
-    n_scales = result.timescales_s.size
-    curves = samples[:, n_scales:].reshape(len(samples), 2, *result.remaining.shape)
-    return result, MarkovTest(samples[:, :n_scales], curves[:, 0], curves[:, 1]), chain.matrix.shape[0]
+    chain = markovian(relearn(np.ones(BLOCKS, bool)))
+    starts = count_starts(frames, chain, sides, block_edges(n_steps))
+    modes = slowest_modes(chain.matrix, TIMESCALES)
+    whole = _result(modes.timescales_s(chain.lag_s), chain, starts, sides, np.ones(BLOCKS, bool), further)
+    tests = [whole]
+    for kept in kept_blocks() if times >= FEWEST_CORRELATION_TIMES else ():
+        again = markovian(relearn(kept))
+        scales = timescales_s(modes.again(again.matrix, chain.places_of(again)), chain.lag_s)
+        tests.append(_result(scales, again, starts, sides, kept, further))
+    names = ("timescales_s", "remaining", "observed", "further")
+    left_out = MarkovTest(*(np.stack([getattr(test, name) for test in tests])[1:] for name in names))
+    return Tested(chain, modes, whole, left_out)
 
 
-def _flat(result: MarkovTest) -> NDArray[np.float64]:
-    return np.concatenate([result.timescales_s, result.remaining.ravel(), result.observed.ravel()])
+def _result(
+    scales: Array, chain: MarkovChain, starts: Starts, sides: Sides, kept: NDArray[np.bool_],
+    further: Callable[[MarkovChain], Array],
+) -> MarkovTest:  # fmt: skip
+    """Timescales of a chain, and its mixing from all starts beside that of the frames."""
+    timescales = np.full(TIMESCALES, np.nan)
+    timescales[: scales.size] = scales
+    rows, remaining = propagated(chain, starts, sides, kept)
+    weights = kept_steps(kept, len(sides.marked) - chain.lag)
+    return MarkovTest(timescales, remaining, counted(sides, weights)[rows], further(chain))
 
 
 def markovian(chain: Chain) -> MarkovChain:
@@ -150,38 +193,44 @@ def markovian(chain: Chain) -> MarkovChain:
     return chain
 
 
-def tested(chain: MarkovChain, starts: Starts, sides: Sides, weights: NDArray[np.int64]) -> MarkovTest:
-    """Timescales of a chain, and its mixing from all starts beside that of the frames."""
-    timescales = np.full(TIMESCALES, np.nan)
-    slowest = implied_timescales(chain.matrix, chain.lag_s, TIMESCALES)
-    timescales[: slowest.size] = slowest
-    rows, remaining = propagated(chain, starts, sides, weights)
-    return MarkovTest(timescales, remaining, counted(sides, weights)[rows])
-
-
-def result_rows(
-    source: str, lag_s: float, times_s: NDArray[np.float64], result: MarkovTest, replicates: MarkovTest
-) -> list[Metric]:
-    """Rows of a test, with 95 % bands if there are replicates."""
+def result_rows(source: str, lag_s: float, times_s: Array, result: Tested) -> list[Metric]:
+    """Rows of a test, with 95 % bands where there are chains without each block."""
+    whole, left_out = result.whole, result.left_out
     groups = [group for _, group in GROUPS]
-    numbers = [str(number + 1) for number in range(np.isfinite(result.timescales_s).sum())]
-    rows = _banded("implied_timescale", source, "s", result.timescales_s, replicates.timescales_s, numbers)
+    numbers = [str(number + 1) for number in range(np.isfinite(whole.timescales_s).sum())]
+    scales = (whole.timescales_s, left_out.timescales_s)
+    rows = _banded("implied_timescale", source, "s", *scales, numbers, "positive")
     for place, time in enumerate(times_s):
-        curves = (result.remaining[place], replicates.remaining[:, place])
+        curves = (whole.remaining[place], left_out.remaining[:, place])
         rows += [
-            row | {"time_s": time} for row in _banded("remaining_propagated", source, "1", *curves, groups)
+            row | {"time_s": time}
+            for row in _banded("remaining_propagated", source, "1", *curves, groups, "share")
         ]
     for quantity, summary in (("chapman_kolmogorov_rms", _rms), ("chapman_kolmogorov_mean", _mean)):
-        errors = (summary(result), summary(replicates))
-        rows += [row | {"time_s": times_s[-1]} for row in _banded(quantity, source, "1", *errors, groups)]
+        scale = "positive" if summary is _rms else "plain"
+        errors = (summary(whole), summary(left_out))
+        rows += [
+            row | {"time_s": times_s[-1]} for row in _banded(quantity, source, "1", *errors, groups, scale)
+        ]
     return [row | {"lag_s": lag_s} for row in rows]
 
 
-def _rms(result: MarkovTest) -> NDArray[np.float64]:
+def mixing_rows(slowest: Sequence[Metric], lag_s: float) -> list[Metric]:
+    """Mixing time of the slowest process, a row with its band; none without a process."""
+    return [
+        row
+        | {"quantity": "mixing_time", "part": np.nan}
+        | {name: mixing_time(row[name], lag_s) for name in ("value", "ci_low", "ci_high")}
+        for row in slowest
+        if row["quantity"] == "implied_timescale"
+    ]
+
+
+def _rms(result: MarkovTest) -> Array:
     return np.asarray(np.sqrt(((result.remaining - result.observed) ** 2).mean(axis=-2)))
 
 
-def _mean(result: MarkovTest) -> NDArray[np.float64]:
+def _mean(result: MarkovTest) -> Array:
     return np.asarray((result.remaining - result.observed).mean(axis=-2))
 
 
@@ -189,25 +238,20 @@ def _banded(
     quantity: str,
     source: str,
     unit: str,
-    values: NDArray[np.float64],
-    samples: NDArray[np.float64],
+    values: Array,
+    left_out: Array,
     parts: Sequence[str],
+    scale: str,
 ) -> list[Metric]:
-    """A row for each part, with the band of the samples, (n_replicates, n_values), if there are any."""
-    samples = samples[:, : len(parts)]
-    low, high = ends = np.full((2, len(parts)), np.nan)
-    # an empty group has no band; a replicate without a closed class has no timescales
-    there = np.isfinite(samples).any(axis=0)
-    whole = np.isfinite(samples[:, there]).all(axis=1)
-    if whole.any():
-        ends[:, there] = band(samples[whole][:, there])
+    """A row for each part, with the band of the values without each block, (BLOCKS, n_values)."""
+    low, high = block_band(values, left_out, scale)
     return [
         metric(quantity, source, value, unit, part=part, ci_low=start, ci_high=end)
         for part, value, start, end in zip(parts, values, low, high, strict=False)
     ]
 
 
-def counted_rows(sides: Sides, frames: Frames, block: int, rng: np.random.Generator) -> list[Metric]:
+def counted_rows(sides: Sides, frames: Frames, memory: float) -> list[Metric]:
     """Mixing of the frames, with bands from blocks of starts.
 
     Parameters
@@ -215,24 +259,20 @@ def counted_rows(sides: Sides, frames: Frames, block: int, rng: np.random.Genera
     sides : Sides
     frames : Frames
         The same window.
-    block : int
-        Frames in a block.
-    rng : numpy Generator
-        Draws the blocks.
+    memory : float
+        Correlation time of the bed [frames].
 
     Returns
     -------
     list of dict
         remaining_counted by time and group.
     """
-    n_steps = len(frames.times_s) - 1
-    samples = block_chains(
-        lambda weights: weights, lambda weights: counted(sides, weights), n_steps, block, REPLICATES, rng
-    )
-    low, high = band(samples)
+    n_steps, values = len(frames.times_s) - 1, counted(sides)
+    left_out = np.stack([counted(sides, kept_steps(kept, n_steps)) for kept in kept_blocks()])
+    low, high = block_band(values, left_out, "share", n_steps / memory)
     return [
         metric("remaining_counted", "dem", share, time_s=gap * frames.interval_s, part=group,
             ci_low=low[place, column], ci_high=high[place, column])
-        for place, (gap, shares) in enumerate(zip(sides.gaps, counted(sides), strict=True))
+        for place, (gap, shares) in enumerate(zip(sides.gaps, values, strict=True))
         for column, ((_, group), share) in enumerate(zip(GROUPS, shares, strict=True))
     ]  # fmt: skip

@@ -10,19 +10,14 @@ from numpy.typing import NDArray
 
 from bedchain.comparison.curves import curve_errors
 from bedchain.errors import UserError
-from bedchain.measures.batch import total_variation
 from bedchain.measures.mixing import GROUPS
-from bedchain.uncertainty.bands import (
-    BAND_SEED,
-    REPLICATES,
-    band,
-    block_means,
-    block_steps,
-    correlation_steps,
-)
+from bedchain.uncertainty.bands import block_band, correlation_steps, means_left_out
 from bedchain.uncertainty.noise_floor import ROUND_OFF, floor_of, noise_floor
 
 Metric = dict[str, Any]
+
+# kinds of the errors of curves, for their bands
+SCALE = {"error_signed": "plain", "error_rms": "positive", "crossed_end": "share"}
 
 
 def metric(
@@ -83,7 +78,7 @@ def dem_metrics(on_side: np.ndarray, remaining: np.ndarray) -> list[Metric]:
 
 
 def model_metrics(
-    source: str, model: np.ndarray, dem: np.ndarray, replicates: np.ndarray | None = None
+    source: str, model: np.ndarray, dem: np.ndarray, left_out: np.ndarray | None = None
 ) -> list[Metric]:
     """Errors of a chain's curves over the comparison window, and the share that has crossed at its end.
 
@@ -92,8 +87,8 @@ def model_metrics(
     source : str
     model, dem : (n_times, 4) ndarray
         Share of each group on its side, at the same times [1].
-    replicates : (n_replicates, n_times, 4) ndarray, optional
-        Curves of chains learned from resampled blocks of time, for 95 % bands.
+    left_out : (BLOCKS, n_times, 4) ndarray, optional
+        Curves of chains learned without each block of time, for 95 % bands; none in a window too short.
 
     Returns
     -------
@@ -101,10 +96,11 @@ def model_metrics(
         error_signed (mean of model - DEM), error_rms, crossed_end, each by group.
     """
     values = curve_errors(model, dem)
-    if replicates is None:
+    if left_out is None:
         bands = dict.fromkeys(values, np.full((2, len(GROUPS)), np.nan))
     else:
-        bands = {name: np.array(band(samples)) for name, samples in curve_errors(replicates, dem).items()}
+        without = curve_errors(left_out, dem)
+        bands = {name: np.array(block_band(values[name], without[name], SCALE[name])) for name in values}
     return [
         metric(f"{name}_{group}", source, value[column], "1", *bands[name][:, column])
         for column, (_, group) in enumerate(GROUPS)
@@ -112,7 +108,13 @@ def model_metrics(
     ]
 
 
-def batch_metrics(source: str, moments_s: np.ndarray, model: np.ndarray, dem: np.ndarray) -> list[Metric]:
+def batch_metrics(
+    source: str,
+    moments_s: np.ndarray,
+    model: np.ndarray,
+    dem: np.ndarray,
+    left_out: np.ndarray | None = None,
+) -> list[Metric]:
     """Total variation of a chain's distribution of the batch from the DEM's at each moment.
 
     Parameters
@@ -122,18 +124,28 @@ def batch_metrics(source: str, moments_s: np.ndarray, model: np.ndarray, dem: np
         [s].
     model, dem : (n_moments, n_cells) ndarray
         Shares of the batch [1].
+    left_out : (BLOCKS, n_moments, n_cells) ndarray, optional
+        By chains learned without each block of time, for 95 % bands; none in a window too short.
 
     Returns
     -------
     list of dict
         batch_total_variation at each moment, and their mean.
     """
-    distances = [total_variation(*shares) for shares in zip(model, dem, strict=True)]
-    rows = [
-        metric(f"batch_total_variation_{moment:.2f}_s", source, distance)
-        for moment, distance in zip(moments_s, distances, strict=True)
+    distance = batch_distances(model, dem)
+    without = np.empty((0, distance.size)) if left_out is None else batch_distances(left_out, dem)
+    ends = np.stack(block_band(distance, without, "share"), axis=1)
+    names = [*(f"batch_total_variation_{moment:.2f}_s" for moment in moments_s), "batch_total_variation_mean"]
+    return [
+        metric(name, source, value, "1", *band)
+        for name, value, band in zip(names, distance, ends, strict=True)
     ]
-    return [*rows, metric("batch_total_variation_mean", source, float(np.mean(distances)))]
+
+
+def batch_distances(model: np.ndarray, dem: np.ndarray) -> np.ndarray:
+    """Total variation at each moment, and their mean: (..., n_moments, n_cells) to (..., n_moments + 1)."""
+    distance = 0.5 * np.abs(model - dem).sum(axis=-1)
+    return np.concatenate((distance, distance.mean(axis=-1, keepdims=True)), axis=-1)
 
 
 def report_metrics(source: str, report: str) -> list[Metric]:
@@ -196,7 +208,7 @@ def bed_metrics(series: pd.DataFrame, weight_Pa: float, start_s: float, end_s: f
 
 
 def mean_metric(quantity: str, series: np.ndarray, unit: str) -> Metric:
-    """Mean over time with its 95 % band from moving blocks.
+    """Mean over time with its 95 % band, without one if the series is too short to know it.
 
     Parameters
     ----------
@@ -209,9 +221,8 @@ def mean_metric(quantity: str, series: np.ndarray, unit: str) -> Metric:
     -------
     dict
     """
-    block = block_steps(correlation_steps(series), len(series))
-    means = block_means(series, block, REPLICATES, np.random.default_rng(BAND_SEED))
-    low, high = band(means)
+    times = len(series) / correlation_steps(series)
+    low, high = block_band(series.mean(), means_left_out(series), "plain", times)
     return metric(quantity, "dem", series.mean(), unit, float(low), float(high))
 
 

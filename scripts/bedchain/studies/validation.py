@@ -10,9 +10,8 @@ from numpy.typing import NDArray
 
 from bedchain.errors import UserError
 from bedchain.measures.slices import QUANTITIES, Boxes, boxes_around, profile, solids_in_boxes
-from bedchain.uncertainty.bands import band, block_weights
+from bedchain.uncertainty.bands import block_band, means_left_out
 
-BLOCK_S = 0.5  # length of a block of the bands: several bubbles
 STRIP_M = 1.9e-3  # width of a strip: the distance of measured points across the bed
 SLICE_M = 4e-3  # height of a slice: about three particles, short against the distance of measured heights
 POINT_COLUMNS = ("quantity", "height_m", "position_x_m", "value")
@@ -41,7 +40,7 @@ class BedFrames(NamedTuple):
 def simulated(
     bed: BedFrames, quantity: str, height_m: float, x_m: np.ndarray
 ) -> tuple[pd.DataFrame, np.ndarray]:
-    """Profile across the bed with its 95 % band by a block bootstrap over frames.
+    """Profile across the bed with its 95 % band by leaving out blocks of frames.
 
     Parameters
     ----------
@@ -57,16 +56,15 @@ def simulated(
     -------
     table : DataFrame
         quantity, height_m, position_x_m, simulated, ci_low, ci_high.
-    replicates : (REPLICATES, n_positions) ndarray
-        In the quantity's unit.
+    left_out : (BLOCKS, n_positions) ndarray
+        Without each block of frames, in the quantity's unit.
     """
     boxes = boxes_around(x_m, STRIP_M, height_m, SLICE_M, bed.width_m, bed.depth_m)
     solids = np.stack([solids_in_boxes(x, z, vz, bed.radius_m, boxes) for x, z, _, vz in bed.frames])
-    block = min(max(1, round(BLOCK_S / bed.interval_s)), len(solids))
-    value, replicates = profile_with_band(quantity, solids, boxes, block)
-    low, high = band(replicates)
+    value, left_out = profile_left_out(quantity, solids, boxes)
+    low, high = block_band(value, left_out)
     names = {"quantity": quantity, "height_m": height_m, "position_x_m": x_m}
-    return pd.DataFrame(names | {"simulated": value, "ci_low": low, "ci_high": high}), replicates
+    return pd.DataFrame(names | {"simulated": value, "ci_low": low, "ci_high": high}), left_out
 
 
 def compare(points: pd.DataFrame, bed: BedFrames) -> tuple[pd.DataFrame, pd.DataFrame]:
@@ -89,13 +87,13 @@ def compare(points: pd.DataFrame, bed: BedFrames) -> tuple[pd.DataFrame, pd.Data
     for quantity, of_quantity in points.groupby("quantity", sort=False):
         parts = []
         for height, at in of_quantity.groupby("height_m"):
-            table, replicates = simulated(bed, quantity, height, at["position_x_m"].to_numpy())
+            table, left_out = simulated(bed, quantity, height, at["position_x_m"].to_numpy())
             table.insert(3, "measured", at["value"].to_numpy())
-            parts.append((f"_{1e3 * height:g}_mm", table, replicates))
-        together = pd.concat([table for _, table, _ in parts]), np.hstack([drawn for *_, drawn in parts])
+            parts.append((f"_{1e3 * height:g}_mm", table, left_out))
+        together = pd.concat([table for _, table, _ in parts]), np.hstack([without for *_, without in parts])
         name, unit = QUANTITIES[quantity]
-        for where, table, replicates in [("", *together), *parts]:
-            values = table["simulated"].to_numpy(), replicates, table["measured"].to_numpy()
+        for where, table, left_out in [("", *together), *parts]:
+            values = table["simulated"].to_numpy(), left_out, table["measured"].to_numpy()
             metrics += difference_metrics(name + where, unit, *values)
         tables.append(together[0])
     return pd.concat(tables, ignore_index=True), pd.DataFrame(metrics)
@@ -146,7 +144,7 @@ def difference_metrics(
     name: str,
     unit: str,
     simulated: NDArray[np.float64],
-    replicates: NDArray[np.float64],
+    left_out: NDArray[np.float64],
     measured: np.ndarray,
 ) -> list[dict[str, object]]:
     """Differences of simulated from measured points: rms and mean, with 95 % bands.
@@ -157,8 +155,8 @@ def difference_metrics(
         Of the quantity.
     simulated, measured : (n_points,) ndarray
         In the unit.
-    replicates : (n_replicates, n_points) ndarray
-        Simulated points of the bootstrap.
+    left_out : (BLOCKS, n_points) ndarray
+        Simulated points without each block of frames.
 
     Returns
     -------
@@ -166,9 +164,10 @@ def difference_metrics(
         quantity, source, value, unit, ci_low, ci_high.
     """
     rows: list[dict[str, object]] = []
-    for summary, over in (("rms", rms), ("mean", lambda values: values.mean(axis=-1))):
-        low, high = band(over(replicates - measured))
+    summaries = (("rms", rms, "positive"), ("mean", lambda values: values.mean(axis=-1), "plain"))
+    for summary, over, scale in summaries:
         value = float(over(simulated - measured))
+        low, high = block_band(value, over(left_out - measured), scale)
         rows.append(
             {
                 "quantity": f"{name}_error_{summary}", "source": "dem", "value": value, "unit": unit,
@@ -178,28 +177,22 @@ def difference_metrics(
     return rows
 
 
-REPLICATES, SEED = 400, 11  # of the bands only: the same data give the same band
-
-
-def profile_with_band(
-    quantity: str, solids: NDArray[np.float64], boxes: Boxes, block: int
+def profile_left_out(
+    quantity: str, solids: NDArray[np.float64], boxes: Boxes
 ) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
-    """Profile over all frames, and those of a moving-block bootstrap over frames.
+    """Profile over all frames, and those without each block of frames.
 
     Parameters
     ----------
     quantity : str
     solids : (n_frames, 2, n_boxes) ndarray
     boxes : Boxes
-    block : int
-        Frames in a block; all profiles of a run draw the same blocks, so that they can be joined.
 
     Returns
     -------
-    (n_boxes,) ndarray, (REPLICATES, n_boxes) ndarray
+    (n_boxes,) ndarray, (BLOCKS, n_boxes) ndarray
         In the quantity's unit.
     """
-    rng, n_frames = np.random.default_rng(SEED), len(solids)
-    weights = np.stack([block_weights(n_frames, block, rng) for _ in range(REPLICATES)]) / n_frames
-    drawn = np.tensordot(weights, solids, axes=1)
-    return profile(quantity, solids.mean(axis=0), boxes), profile(quantity, drawn, boxes)
+    return profile(quantity, solids.mean(axis=0), boxes), profile(
+        quantity, np.asarray(means_left_out(solids)), boxes
+    )

@@ -10,7 +10,6 @@ import numpy as np
 from numpy.typing import NDArray
 
 from bedchain.measures.batch import total_variation
-from bedchain.uncertainty.bands import band
 
 Array = NDArray[np.float64]
 
@@ -56,6 +55,24 @@ def resampled(run: NDArray[np.integer], replicates: int, rng: np.random.Generato
         for drawn in rng.integers(0, len(members), len(members)):
             np.add.at(row, rng.choice(members[drawn], members[drawn].size), 1.0)
     return weights
+
+
+def band(samples: Array, level: float = 0.95) -> tuple[Array, Array]:
+    """Ends of the central interval of replicates over the first axis (percentile band).
+
+    Parameters
+    ----------
+    samples : (n_replicates, ...) array
+        Of starts and runs that were drawn with `resampled`.
+    level : float
+        Share of the replicates inside [1].
+
+    Returns
+    -------
+    low, high : (...) array
+    """
+    low, high = np.quantile(samples, [(1 - level) / 2, (1 + level) / 2], axis=0)
+    return low, high
 
 
 def signed(error: Array, weights: Array | None = None) -> Array:

@@ -8,9 +8,11 @@ import pandas as pd
 from numpy.typing import NDArray
 from scipy import stats
 
-from bedchain.uncertainty.bands import block_steps, correlation_steps
+from bedchain.uncertainty.bands import correlation_steps
 
 LEVEL = 0.95
+# length of a block in correlation times, and least number of blocks in a series
+BLOCK_CORRELATIONS, FEWEST_BLOCKS = 3, 5
 REPLICATES = 1000
 # seed of the intervals: the same series gives the same interval
 SEED = 13
@@ -65,7 +67,8 @@ def drift(series: NDArray[np.floating], level: float = LEVEL) -> Drift:
     weights = line / (line @ line)
     change = float(weights @ values)
     rest = values - values.mean() - change * line
-    block = block_steps(correlation_steps(rest), len(rest))
+    longest = max(1, len(rest) // FEWEST_BLOCKS)
+    block = int(np.clip(BLOCK_CORRELATIONS * correlation_steps(rest), 1, longest))
     rng = np.random.default_rng(SEED)
     n_blocks = -(-len(rest) // block)
     first = rng.integers(0, len(rest) - block + 1, (REPLICATES, n_blocks))

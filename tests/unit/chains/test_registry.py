@@ -2,13 +2,15 @@
 import numpy as np
 import pytest
 
-from bedchain.chains import registry
+from bedchain.chains import dynamic, registry
+from bedchain.chains.counting import count_moves, count_pairs
 from bedchain.chains.estimators import ESTIMATORS
 from bedchain.chains.markov_chain import MarkovChain
 from bedchain.errors import DataError
 from bedchain.measures.mixing import marked_histogram, sides
 from bedchain.trajectory.frames import Frames
 from bedchain.trajectory.grid import Grid
+from bedchain.uncertainty.bands import kept_blocks, kept_steps
 from made.frames import stirred
 
 # Monte Carlo against the exact mean, in standard errors; about 1 in 15 000 exceeds it by chance.
@@ -134,12 +136,17 @@ def test_one_cell_and_one_cell_a_diameter(name):
 
 @pytest.mark.parametrize("name", list(registry.LEARNERS))
 @pytest.mark.parametrize("estimator", list(ESTIMATORS))
-def test_learning_again_with_other_weights_is_learning_with_them(name, estimator):
+def test_learning_again_without_a_block_is_learning_without_it(name, estimator):
     frames, grid = stirred(12, n_frames=30)
     again = registry.relearner(name, frames, grid, 2, estimator)
-    for seed in range(3):
-        weights = np.random.default_rng(seed).integers(0, 3, 28)
-        one, two = again(weights), registry.learn(name, frames, grid, 2, estimator, weights)
+    for kept in (np.ones(5, bool), *kept_blocks()[:2]):
+        weights = kept_steps(kept, 28)
+        one, two = again(kept), registry.learn(name, frames, grid, 2, estimator, weights)
+        if name == "dynamic":
+            # its pairs of moves are fewer by a lag, and have blocks of their own
+            double = count_pairs(frames.cells, grid.n_cells, 2, kept_steps(kept, 26))
+            single = count_moves(frames.cells, grid.n_cells, 2, step_weights=weights)
+            two = dynamic.from_counts(double, single, grid, two.lag_s, estimator)
         assert one.lag_s == two.lag_s and one.report == pytest.approx(two.report, abs=1e-12)
         for key, array in one.arrays().items():
             if array.dtype.kind == "f":

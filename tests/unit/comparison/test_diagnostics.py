@@ -43,20 +43,21 @@ def test_times_of_a_column_that_is_climbed_step_by_step():
     grid = Grid(0.01, 0.03, 1, 3)
     cells = np.array([[0, 0, 1, 1, 2, 2], [0, 1, 1, 2, 2, 0]])
     chain = registry.learn("static", framed(cells, grid), grid)
-    value = by(diagnostics.time_rows(chain, np.ones(3), 0.1, top=2), "quantity", "part")
-    lag = chain.lag_s
+    times, lag = diagnostics.times_of(chain, np.ones(3), 0.1, top=2), chain.lag_s
+    rows = diagnostics.time_rows("static", lag, 0.02, times, times * np.linspace(0.9, 1.1, 5)[:, None])
+    value = by(rows, "quantity", "part")
     for part in ("mean", "shortest", "longest"):
         assert value["residence_time", part] == pytest.approx(2 * lag)
     assert value["first_passage_time", ""] == pytest.approx(4 * lag)
-    # eigenvalues (1 + w) / 2 with w a third root of 1: of size 1/2
-    assert value["mixing_time", ""] == pytest.approx(2 * lag)
+    assert all(row["ci_low"] < row["value"] < row["ci_high"] for row in rows)
 
 
 def test_a_bed_at_rest_has_neither_residence_nor_passage():
     grid = Grid(0.01, 0.03, 1, 3)
     still = registry.learn("static", framed(np.tile(np.arange(3), (3, 1)), grid), grid)
-    rows = diagnostics.time_rows(still, np.ones(3), 0.1, top=2)
-    assert [row["quantity"] for row in rows] == ["mixing_time"]
+    times = diagnostics.times_of(still, np.ones(3), 0.1, top=2)
+    assert np.isnan(times).all()
+    assert diagnostics.time_rows("static", 0.1, 0.02, times, np.empty((0, 4))) == []
 
 
 def test_arrivals_and_mixing_by_hand():

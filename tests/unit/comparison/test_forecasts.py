@@ -39,7 +39,8 @@ def by_dense_powers(frames: Frames, multiples: list[int], lag: int, weights: np.
 def of_model(name: str, frames: Frames, lag: int, gaps: list[int], weights: np.ndarray) -> np.ndarray:
     sides = count_sides(frames, *SPLITS, gaps)
     chain = registry.learn(name, frames, GRID, lag, "pooled", weights)
-    starts = count_starts(frames, chain, sides)
+    # each step is a block of its own
+    starts = count_starts(frames, chain, sides, np.arange(len(weights) + 1))
     rows, remaining = propagated(chain, starts, sides, weights)
     assert rows.tolist() == [row for row, gap in enumerate(gaps) if gap % lag == 0]
     return remaining
@@ -91,7 +92,9 @@ def test_one_step_of_the_velocity_class_chain_is_what_the_frames_show(earlier):
     chain = registry.learn(
         "velocity_class", frames, GRID, classes=(2, 2), fewest_samples=0, earlier_s=earlier
     )
-    _, remaining = propagated(chain, count_starts(frames, chain, sides), sides, ones)
+    _, remaining = propagated(
+        chain, count_starts(frames, chain, sides, np.arange(len(ones) + 1)), sides, ones
+    )
     seen = counted(count_sides(frames.part(slice(back, None)), *SPLITS, [1]))
     assert remaining == pytest.approx(seen, abs=ROUND_OFF)
 

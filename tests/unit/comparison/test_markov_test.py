@@ -27,17 +27,13 @@ def walkers(turning: float, seed: int):
     return framed(cells, GRID)
 
 
-def rows_of(frames, name):
+def rows_of(frames, name, memory=1.0):
     """Rows by quantity, part and time, at a lag of one frame."""
     sides = count_sides(frames, *SPLITS, [1, 5])
-    rows = check_model(
-        name,
-        partial(registry.relearner, name, frames, GRID),
-        frames,
-        sides,
-        [1],
-        10,
-        np.random.default_rng(1),
+    relearner = partial(registry.relearner, name, frames, GRID)
+    rows, first = check_model(name, relearner, frames, sides, [1], memory, lambda chain: chain.matrix.sum(1))
+    assert first.whole.further == pytest.approx(1) and len(first.left_out.further) == (
+        0 if memory > 16 else 5
     )
     return {(row["quantity"], row["part"], row.get("time_s")): row for row in rows}
 
@@ -70,6 +66,11 @@ def test_timescales_are_those_of_the_ring():
     assert scales == pytest.approx(expected, rel=0.03)
 
 
+def test_a_window_too_short_has_no_bands():
+    rows = rows_of(walkers(0.5, 5), "static", 40.0)
+    assert all(np.isnan(row["ci_low"]) for row in rows.values())
+
+
 def test_an_empty_group_has_no_band_and_takes_none_from_the_others():
     # all particles lie on the line and count as up
     rows = rows_of(walkers(0.5, 8), "static")
@@ -82,7 +83,7 @@ def test_an_empty_group_has_no_band_and_takes_none_from_the_others():
 def test_counted_shares_have_the_band_of_their_blocks():
     frames = walkers(0.5, 6)
     sides = count_sides(frames, *SPLITS, [1, 2])
-    rows = counted_rows(sides, frames, 10, np.random.default_rng(2))
+    rows = counted_rows(sides, frames, 1.0)
     assert [(row["time_s"], row["part"]) for row in rows][:2] == [(0.025, "left"), (0.025, "right")]
     left = rows[0]
     # of the two cells on the left, each sends half over the edge

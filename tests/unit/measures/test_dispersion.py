@@ -5,7 +5,7 @@ import numpy as np
 import pytest
 
 from bedchain.errors import DataError
-from bedchain.measures.dispersion import dispersion_by_height
+from bedchain.measures.dispersion import dispersion_by_height, layer_of
 from bedchain.trajectory.frames import Lag
 
 EDGES = np.array([0.0, 0.4, 1.0])
@@ -39,3 +39,10 @@ def test_a_layer_without_particles_has_no_number():
 def test_a_lag_as_long_as_the_frames_is_refused():
     with pytest.raises(DataError, match="3 frames hold no displacement over 3 frames"):
         dispersion_by_height(np.zeros((3, 2)), np.zeros((3, 2)), EDGES, Lag(3, 0.1))
+
+
+def test_layers_are_those_of_digitize():
+    z = np.random.default_rng(3).uniform(-0.2, 1.2, 2000).astype(np.float32).astype(float)
+    for edges in (np.linspace(0, 1, 8), np.arange(6) * 0.1, np.array([0.0, 0.1, 0.5, 0.6])):
+        places = np.concatenate((z, edges))
+        assert (layer_of(places, edges) == np.digitize(places, edges)).all()

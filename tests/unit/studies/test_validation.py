@@ -11,10 +11,11 @@ from bedchain.studies.validation import (
     BedFrames,
     compare,
     difference_metrics,
-    profile_with_band,
+    profile_left_out,
     read_points,
     rms,
 )
+from bedchain.uncertainty.bands import STUDENT, block_band
 
 RADIUS = 6e-4
 
@@ -27,7 +28,7 @@ def beads(number, seed=3):
 def test_no_particle_means_voidage_one_and_no_velocity():
     boxes = boxes_around(np.array([0.02]), 2e-3, 0.02, 4e-3, 0.044, 0.01)
     nothing = np.zeros((4, 2, 1))
-    assert profile_with_band("voidage_1", nothing, boxes, 2)[0] == 1.0
+    assert profile_left_out("voidage_1", nothing, boxes)[0] == 1.0
     assert np.isnan(profile("particle_velocity_m_s", nothing[0], boxes)).all()
 
 
@@ -35,9 +36,11 @@ def test_the_band_of_independent_frames_is_that_of_their_mean():
     rng = np.random.default_rng(8)
     boxes = boxes_around(np.array([0.02]), 2e-3, 0.02, 4e-3, 0.044, 0.01)
     solids = rng.normal(4e-8, 1e-8, (400, 2, 1))
-    _, replicates = profile_with_band("voidage_1", solids, boxes, 1)
+    value, left_out = profile_left_out("voidage_1", solids, boxes)
     expected = 1e-8 / np.sqrt(400) / boxes.volumes_m3[0]
-    assert replicates.std() == pytest.approx(expected, rel=0.2)
+    low, high = block_band(value, left_out)
+    # four degrees of freedom know an error to a third
+    assert (high - low) / 2 == pytest.approx(STUDENT * expected, rel=0.7)
 
 
 def test_a_bed_compared_with_itself_differs_by_nothing_and_with_a_shift_by_the_shift():
@@ -64,7 +67,7 @@ def test_a_bed_compared_with_itself_differs_by_nothing_and_with_a_shift_by_the_s
 
 def test_rms_and_its_band_by_hand():
     assert rms(np.array([3.0, -4.0])) == pytest.approx(np.sqrt(12.5))
-    drawn = np.array([[1.0, 1.0], [2.0, 2.0], [3.0, 3.0]])
+    drawn = np.array([[1.9, 1.9], [1.95, 1.95], [2.0, 2.0], [2.05, 2.05], [2.1, 2.1]])
     rows = difference_metrics("voidage", "1", np.array([2.0, 2.0]), drawn, np.array([0.0, 0.0]))
     assert rows[0]["value"] == 2.0 and 1.0 < rows[0]["ci_low"] < rows[0]["ci_high"] < 3.0
     assert rows[1]["quantity"] == "voidage_error_mean"

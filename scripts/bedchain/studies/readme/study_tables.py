@@ -172,6 +172,20 @@ def benchmark(results: Path) -> pd.DataFrame:
     )
 
 
+def coverage(results: Path) -> pd.DataFrame:
+    """How often the error bars hold the truth."""
+    table = pd.read_csv(results / "coverage.csv")
+    return pd.DataFrame(
+        {
+            "estimated": table["process"],
+            "correlation times": table["correlation_times_1"].map(lambda times: f"{times:.3g}"),
+            "held": [f"{100 * share:.1f} %" for share in table["covered_1"]],
+            "bands": [f"{number:,}" for number in table["samples_1"]],
+            "windows": [f"{number:,}" for number in table["windows_1"]],
+        }
+    )
+
+
 def _chains(results: Path) -> pd.DataFrame:
     table = pd.read_csv(results / "tradeoff.csv", dtype={"problem": str, "preset": str})
     return table[(table["half"] == "mcm") & table["problem"].isna()].copy()

@@ -11,9 +11,9 @@ from bedchain.measures.lagrangian import Statistics, dispersion_error
 from bedchain.studies.scan import REPLICATES
 from bedchain.studies.scores.held_out import INTERVAL_SEED, HeldOut
 from bedchain.studies.scores.predictions import TIMES_S, Predictions
-from bedchain.uncertainty.bands import band
 from bedchain.uncertainty.deviations import (
     SIDES,
+    band,
     distances,
     fluctuation,
     interval,

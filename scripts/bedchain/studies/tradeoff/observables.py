@@ -10,9 +10,9 @@ from numpy.typing import NDArray
 from scipy import stats
 
 from bedchain.studies.scan import REPLICATES
-from bedchain.uncertainty.bands import band
 from bedchain.uncertainty.deviations import (
     SIDES,
+    band,
     distances,
     interval,
     mean_of_others,

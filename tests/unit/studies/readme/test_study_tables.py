@@ -123,3 +123,16 @@ def test_validation_verification_peers_and_benchmark(tmp_path: Path) -> None:
     pd.DataFrame([task]).to_csv(tmp_path / "benchmark_core.csv", index=False)
     assert list(study_tables.benchmark(tmp_path).iloc[0])[2:] == [
         "81,000", "27 x 105", "0.14 s", "0.12 s", "339 MB", "77,726", "", ""]  # fmt: skip
+
+
+def test_coverage_in_per_cent(tmp_path: Path) -> None:
+    row = {
+        "process": "mean",
+        "correlation_times_1": 10.04,
+        "covered_1": 0.9225,
+        "samples_1": 2000,
+        "windows_1": 40,
+    }
+    pd.DataFrame([row]).to_csv(tmp_path / "coverage.csv", index=False)
+    (values,) = study_tables.coverage(tmp_path).to_numpy().tolist()
+    assert values == ["mean", "10", "92.2 %", "2,000", "40"]
