@@ -114,4 +114,5 @@ def embedded(file: Path, captions: dict[str, Path]) -> dict[str, str]:
 
 
 def _number(value: float, unit: str) -> str:
-    return f"{value:.3g}" if unit == "1" else f"{value:.3g} {unit}"
+    text = f"{value:.0f}" if abs(value) >= 1000 else f"{value:.3g}"
+    return text if unit == "1" else f"{text} {unit}"
