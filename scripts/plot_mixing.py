@@ -29,7 +29,7 @@ MARKS_PER_CURVE = 14
 BAND_OPACITY = 0.2
 RUNS_COLOUR, RUNS_EDGE = "#d4d4d4", "#9a9a9a"
 MIXED_COLOUR = "#888888"
-LEGEND_COLUMNS = 4
+LEGEND_COLUMNS, MANY, LEGEND_ROW_IN = 4, 9, 0.16
 # a key of a legend: what is drawn above it
 Entries = dict[str, Any]
 
@@ -79,7 +79,9 @@ def plot_mixing(
         lowest = min(shown, *(mixed[group] for group in PANELS[direction]))
         panels[0].set_ylim(max(0.0, lowest - 0.03), 1.03)
         panels[0].set_xlim(table["time_s"].min(), table["time_s"].max())
-        columns = math.ceil(len(entries) / math.ceil(len(entries) / LEGEND_COLUMNS))
+        rows = math.ceil(len(entries) / (LEGEND_COLUMNS if len(entries) <= MANY else LEGEND_COLUMNS - 1))
+        columns = math.ceil(len(entries) / rows)
+        figure.set_figheight(figure.get_figheight() + LEGEND_ROW_IN * max(0, rows - 2))
         figure.legend(
             list(entries.values()), list(entries), loc="outside upper center", ncols=columns,
             handlelength=2.6, columnspacing=1.4,
