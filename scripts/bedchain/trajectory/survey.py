@@ -294,6 +294,8 @@ def rounded_outwards(low: float, high: float) -> tuple[float, float]:
     """Ends of a span, the span a little longer so that it is a number of few digits."""
     if not high > low:
         return low, high
+    if not math.isfinite(high - low):
+        raise UserError(f"particles from {low:g} to {high:g}: some positions are no lengths")
     grain = 10.0 ** (math.floor(math.log10(high - low)) - BOX_DIGITS)
     first, last = math.floor(low / grain), math.ceil(high / grain)
     return float(f"{first * grain:.{DIGITS}g}"), float(f"{last * grain:.{DIGITS}g}")

@@ -12,6 +12,7 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from bedchain.errors import DataError
+from bedchain.trajectory.forms import legacy_vtk
 from bedchain.trajectory.forms.raw import PARTICLE, Columns, RawFrame, our_columns
 
 HEAD_BYTES = 4096
@@ -101,7 +102,13 @@ def collection(path: Path) -> Iterator[tuple[float, Path]]:
 
 def _values(path: Path, renamed: Mapping[str, str]) -> Columns:
     """Points and their data; the numbers in the header are compared with the size of the file first."""
-    _check_counts(path)
+    content = path.read_bytes()
+    if legacy_vtk.is_of_liggghts(content):
+        of_file = legacy_vtk.read_values(content)
+        values = _named(of_file.points, of_file.fields, {})
+        places, arrays = our_columns(list(values), renamed), list(values.values())
+        return {name: arrays[places[name]] for name in PARTICLE if name in places}
+    _check_counts(content)
     import pyvista  # slow to import
     from vtkmodules.vtkCommonCore import vtkLogger
 
@@ -137,9 +144,8 @@ def _named(points: np.ndarray, point_data: Any, cell_data: Any) -> Columns:
     return values
 
 
-def _check_counts(path: Path) -> None:
+def _check_counts(content: bytes) -> None:
     """Refuse a header whose numbers of points, cells or values are beyond what the file can hold."""
-    content = path.read_bytes()
     legacy = content.startswith(b"# vtk DataFile")
     most = len(content) if legacy else MOST_RATIO * len(content)
     for match in (LEGACY_COUNTS if legacy else XML_COUNTS).finditer(content):
