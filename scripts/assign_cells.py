@@ -7,9 +7,13 @@ from pathlib import Path
 import numpy as np
 
 from bedchain.stage import LOG, run_stage
-from bedchain.trajectory.cell_store import write_cells
+from bedchain.trajectory.cell_store import open_cells, write_cells
 from bedchain.trajectory.grid import Grid
 from bedchain.trajectory.store import BedFiles
+from bedchain.trajectory.track import ergodicity_warning
+
+# so few particles are tracers that stand for a bed
+FEW = 10
 
 
 @dataclass(frozen=True)
@@ -71,6 +75,8 @@ def assign_cells(
         f"{1000 * length / n:g} mm" for length, n in list(lengths)[: 3 if grid.layers > 1 else 2]
     )
     LOG.info("%d cells of %s, %d frames, in %s", grid.n_cells, size, len(values), cells)
+    if values.shape[2] <= FEW:
+        LOG.warning("warning: %s", ergodicity_warning(open_cells(cells).cells, grid.n_cells, values.shape[2]))
     if gone:
         share = gone / (values.shape[0] * values.shape[2])
         LOG.info("%.3g %% of particles times frames are not in the bed (outside: %s)", 100 * share, outside)

@@ -14,6 +14,7 @@ from bedchain.trajectory.frames_of_case import placement_of, settings_of
 from bedchain.trajectory.imported import Targets, write_imported
 from bedchain.trajectory.store import open_trajectory
 from bedchain.trajectory.survey import cached_survey, check_even
+from bedchain.trajectory.track import resample
 
 CHUNK_FRAMES = 50
 
@@ -69,8 +70,12 @@ def import_frames(
     """
     settings = settings_of(section)
     frames = cached_survey(settings, folder, targets.metadata.with_name("frames.json"), whole_box=False)
-    check_even(frames)
+    if "every_s" not in section:
+        check_even(frames)
     motion = write_imported(frames, settings, placement_of(section, *box), targets, progress)
+    if "every_s" in section:
+        every_s = section["every_s"]
+        LOG.info(resample(targets.trajectory, targets.metadata, every_s, section.get("reach_s", every_s)))
     store, about = open_trajectory(targets.trajectory, targets.metadata)
     write_csv(bed_series(store, np.array(about["times_s"])), tables.bed_series)
     write_csv(motion.table(), tables.motion)

@@ -19,6 +19,7 @@ CELL_SHARES = (40, 20, 10, 5, 3)  # of the discussion, cells in the width
 GAS_CELL_DIAMETERS = 5  # in which the film shows the voidage
 DEEP_DIAMETERS = 1.5  # from there on the third axis is stored
 DIGITS = 9
+WHOLE = 0.01  # of an interval
 
 
 def settings_of(section: Case) -> FrameSettings:
@@ -60,12 +61,13 @@ def measured_sections(case: Case, folder: Path, cache: Path) -> Case:
     settings = settings_of(section)
     placed = {"width_m", "height_m"} <= bed.keys() and "origin_m" in section
     frames = cached_survey(settings, folder, cache, whole_box=not placed)
-    check_even(frames)
+    if "every_s" not in section:
+        check_even(frames)
     origin, sizes = corner_and_sizes(frames, section)
     diameter = case.get("particles", {}).get("diameter_m") or mean_diameter(frames)
     if not isinstance(diameter, int | float):
         raise UserError("the frames have no radius: give particles.diameter_m, the particles' diameter")
-    interval, width = frames.interval_s, bed.get("width_m", sizes[0])
+    interval, width = section.get("every_s", frames.interval_s), bed.get("width_m", sizes[0])
     lag = case.get("chain", {}).get("lag_s", interval)
     window = case.get("comparison", {})
     lasts = window.get("end_s", math.inf) - window.get("start_s", 0)
@@ -77,13 +79,19 @@ def measured_sections(case: Case, folder: Path, cache: Path) -> Case:
         "frames": {"origin_m": list(origin), "keep_depth": sizes[1] > DEEP_DIAMETERS * diameter},
         "bed": {"width_m": sizes[0], "height_m": sizes[2], **thickness},
         "particles": {"number": frames.number, "diameter_m": diameter},
-        "time": {"end_s": frames.entries[-1].time_s, "frame_interval_s": interval},
+        "time": {"end_s": whole(frames.entries[-1].time_s, interval), "frame_interval_s": interval},
         "gas": {"model": "none", "cell_size_m": GAS_CELL_DIAMETERS * diameter},
         "chain": {"lag_s": interval},
         "mixing": {"split_z_m": middle},
         "discussion": {"cell_sizes_m": cell_sizes or [diameter]},
         "figures": {"batch_height_m": float(f"{middle / 2:.3g}"), "moments_s": moments or [lag]},
     }
+
+
+def whole(time_s: float, interval_s: float) -> float:
+    """Last multiple of an interval up to a time, which is the time itself up to its round-off [s]."""
+    count = time_s / interval_s
+    return time_s if abs(count - round(count)) < WHOLE else float(f"{int(count) * interval_s:.{DIGITS}g}")
 
 
 def mean_diameter(frames: Survey) -> float | None:

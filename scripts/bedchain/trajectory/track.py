@@ -5,13 +5,17 @@ A chain of a bed learned from one tracer takes for granted that the tracer goes 
 shares of time that are the shares of the particles (ergodicity); `visits` says what the track shows of that.
 """
 
+import json
+from pathlib import Path
 from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
 from bedchain.errors import DataError
+from bedchain.files import atomic_file, write_text
 from bedchain.trajectory.grid import OUTSIDE
+from bedchain.trajectory.store import open_trajectory
 
 # entries of a cell after which shares of time are known to a third
 FEW_ENTRIES = 10
@@ -112,6 +116,42 @@ def even_track(
             f"after: the track has one each {np.median(np.diff(np.sort(times))):g} s; take a longer reach"
         )
     return Track(np.asarray(interval_s * frames, float), track, kept, dropped)
+
+
+def resample(trajectory: Path, metadata: Path, every_s: float, reach_s: float) -> str:
+    """Write a trajectory of tracers at uneven times anew, at multiples of a time; velocities are left out.
+
+    Parameters
+    ----------
+    trajectory, metadata : Path
+        ``trajectory.npy`` and ``trajectory.json``; replaced.
+    every_s, reach_s : float
+        As `even_track` [s].
+
+    Returns
+    -------
+    str
+        How many positions were kept and dropped.
+    """
+    values, about = open_trajectory(trajectory, metadata)
+    places = [row for row, name in enumerate(about["columns"]) if name in ("x", "z", "y")]
+    frame, tracer = np.nonzero(np.isfinite(values[:, 0]))
+    order = np.lexsort((frame, tracer))
+    frame, tracer = frame[order], tracer[order]
+    located = np.asarray(values[frame][:, places, :], float)[np.arange(frame.size), :, tracer].T
+    track = even_track(np.array(about["times_s"])[frame], located, tracer, every_s, reach_s)
+    shape = (len(track.times_s), values.shape[1], track.positions_m.shape[2])
+    even = np.full(shape, np.nan, np.float32)
+    even[:, places] = np.moveaxis(track.positions_m, 0, 1)
+    with atomic_file(trajectory) as temporary, temporary.open("wb") as stream:
+        np.save(stream, even)
+    new = {"times_s": track.times_s.tolist(), "steps": list(range(shape[0])), "frame_interval_s": every_s}
+    write_text(metadata, json.dumps(about | new | {"complete": not track.dropped}))
+    share = track.dropped / (track.kept + track.dropped)
+    return (
+        f"{track.kept} positions at multiples of {every_s:g} s, {track.dropped} ({share:.1%}) dropped, whose "
+        f"neighbours are more than {reach_s:g} s away"
+    )
 
 
 def visits(cells: NDArray[np.int32], n_cells: int) -> dict[str, float]:

@@ -1,13 +1,16 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Tracks at uneven times: positions by hand, what is dropped, and a known matrix from one tracer."""
 
+import json
+
 import numpy as np
 import pytest
 
 from bedchain.chains.counting import count_moves
 from bedchain.errors import DataError
 from bedchain.trajectory.grid import OUTSIDE, Grid
-from bedchain.trajectory.track import ergodicity_warning, even_track, visits
+from bedchain.trajectory.store import open_trajectory
+from bedchain.trajectory.track import ergodicity_warning, even_track, resample, visits
 from bedchain.uncertainty.bands import block_band, kept_blocks, kept_steps
 
 P = np.array([[0.7, 0.3, 0.0, 0.0], [0.2, 0.5, 0.3, 0.0], [0.0, 0.25, 0.5, 0.25], [0.0, 0.0, 0.4, 0.6]])
@@ -90,3 +93,20 @@ def test_a_short_track_is_warned_of():
     again = np.tile([0, 1], 100)[:, None].astype(np.int32)
     words = ergodicity_warning(again, 8, 1)
     assert "2 of 8 cells" in words and "too short" not in words and "ergodicity" in words
+
+
+def test_a_stored_track_is_written_anew_at_even_times(tmp_path):
+    times, x = located(1, 200)
+    values = np.full((times.size, 4, 1), np.nan, np.float32)
+    values[:, 0, 0], values[:, 1, 0] = x, 0.005
+    files = tmp_path / "trajectory.npy", tmp_path / "trajectory.json"
+    np.save(files[0], values)
+    about = {"times_s": times.tolist(), "number": 1, "columns": ["x", "z", "vx", "vz"], "width_m": 0.04}
+    files[1].write_text(json.dumps(about))
+    words = resample(*files, STEP_S, 0.04)
+    even, said = open_trajectory(*files)
+    track = even_track(times, np.stack((x, np.full(x.size, 0.005))), np.zeros(x.size, int), STEP_S, 0.04)
+    np.testing.assert_allclose(even[:, :2, 0].T, track.positions_m[..., 0], rtol=1e-6)
+    np.testing.assert_allclose(np.diff(said["times_s"]), STEP_S)
+    assert said["frame_interval_s"] == STEP_S and said["width_m"] == 0.04 and not said["complete"]
+    assert f"{track.kept} positions" in words and f"{track.dropped} (" in words
