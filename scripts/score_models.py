@@ -13,10 +13,12 @@ import pandas as pd
 from bedchain.chains import registry
 from bedchain.chains.registry import CaseChains
 from bedchain.comparison.curves import curve_table
-from bedchain.errors import UserError
+from bedchain.errors import DataError, UserError
 from bedchain.figures.model_styles import BASELINE
 from bedchain.files import write_arrays, write_csv
 from bedchain.measures.batch import Batch
+from bedchain.measures.choice import choose_cells, choose_lag, raised
+from bedchain.measures.dispersion_by_lag import dispersion_by_lag, thinned
 from bedchain.measures.lagrangian import Statistics
 from bedchain.measures.mixing import Splits
 from bedchain.stage import LOG, run_stage
@@ -27,10 +29,10 @@ from bedchain.studies.scores.held_out import HeldOut, hold_out
 from bedchain.studies.scores.predictions import Predictions, batch_shares, dem_statistics, predict_held_out
 from bedchain.studies.scores.rows import dem_rows, score_rows
 from bedchain.studies.scores.search_spaces import candidates
-from bedchain.studies.scores.selection import select
+from bedchain.studies.scores.selection import disagreement, select
 from bedchain.trajectory.frames import Window, lag_frames
 from bedchain.trajectory.grid import Grid
-from bedchain.trajectory.realisations import open_bed, open_repeats
+from bedchain.trajectory.realisations import Realisation, open_bed, open_repeats
 from bedchain.trajectory.regrid import regrid
 from bedchain.trajectory.store import BedFiles
 from bedchain.uncertainty.bands import memory
@@ -120,11 +122,18 @@ def score_models(
     lag = lag_frames(case.lag_s, run.interval_s)
     spacing = math.ceil(memory(run.frames(grid, which), splits.split_x_m))
     task = Task(grid, splits, case.estimator, spacing, compared.stop - 1 - compared.start)
-    tried = candidates(registry.LEARNERS, grid, lag, case.diameter_m) if tried is None else tried
+    rule = by_rule(run, which, splits, case.diameter_m)
+    if tried is None:
+        tried = candidates(registry.LEARNERS, grid, lag, case.diameter_m)
+        tried += [rule] if rule and rule not in tried else []
     about: dict[str, object] = {"task": repr(task), "learning": learning, "comparison": comparison}
     folder = files.scores.parent / "candidates" / stamp([bed.trajectory, bed.metadata], about)
     kept = remove_other_results(folder)
     table = select(tried, run, which, task, kept)
+    table["rule"] = [int(one == rule) for one in tried]
+    for row in table[table["rule"] == 1].to_dict("records"):
+        if words := disagreement(table, pd.Series(row)):
+            LOG.warning(words)
     chosen = {one.name: one for one, mark in zip(tried, table["chosen"], strict=True) if mark}
     winner = table.loc[table["best"] == 1, "model"].item()
     held = hold_out(runs, grid, comparison, spacing, splits, batch.batch_height_m, batch.moments_s)
@@ -145,6 +154,20 @@ def score_models(
     statistics = {name: [one for one, _ in trial.lagrangian] for name, trial in trials.items()}
     write_csv(lagrangian_table({"dem": dem, **statistics}), files.lagrangian)
     write_arrays(files.best, batch_of_best(trials[winner], held, winner, chosen[winner], case.seed))
+
+
+def by_rule(run: Realisation, learning: slice, splits: Splits, diameter_m: float) -> Candidate | None:
+    """The static chain with the lag and the cells of choose_chain's rule; None where that refuses."""
+    values = run.values[learning]
+    x_m, z_m = thinned(values[:, 0]), thinned(values[:, 1])
+    try:
+        curve = dispersion_by_lag(x_m, z_m, run.interval_s)
+        lag = raised(choose_lag(curve, values.shape[2], diameter_m), curve, np.stack((x_m, z_m)))
+    except DataError as problem:
+        LOG.warning("no setting by rule: %s", problem)
+        return None
+    cells = choose_cells((x_m, z_m), (run.width_m, run.height_m), splits, diameter_m, lag.frames)
+    return Candidate("static", cells.columns, cells.rows, lag.frames)
 
 
 def mixing_table(held: HeldOut, trials: dict[str, Predictions], winner: str) -> pd.DataFrame:

@@ -28,7 +28,7 @@ LEARNING, COMPARISON = Window(0.25, 1.75), Window(1.75, 3.25)
 MOMENTS = [0.05, 0.3, 0.55]
 TRIED = [
     Candidate("static", 10, 10, 1),
-    Candidate("static", 10, 10, 16),
+    Candidate("static", 10, 10, 6),
     Candidate("velocity_class", 10, 10, 1, {"classes": [5, 5]}),
 ]
 TIMES = ["learn_s", "curves_s", "paths_s"]
@@ -92,10 +92,10 @@ def test_the_model_that_knows_the_velocity_is_chosen_and_wins(walkers, table):
 def test_each_model_has_one_setting_and_the_papers_chain_is_always_tested(walkers, table):
     chosen = pd.read_csv(walkers.selection).query("chosen == 1")
     assert sorted(chosen["model"]) == ["static", "velocity_class"]
-    assert chosen.set_index("model")["lag_s"]["static"] == pytest.approx(0.4)
+    assert chosen.set_index("model")["lag_s"]["static"] == pytest.approx(0.15)
     tested = table.query("quantity == 'error_rms_mixing' and window == 'start'")
     settings = {(row.model, round(row.lag_s, 3)) for row in tested.itertuples() if np.isnan(row.time_s)}
-    assert settings == {("static", 0.025), ("static", 0.4), ("velocity_class", 0.025)}
+    assert settings == {("static", 0.025), ("static", 0.15), ("velocity_class", 0.025)}
 
 
 def test_scrambling_the_test_window_leaves_the_choice_alone(walkers, tmp_path):

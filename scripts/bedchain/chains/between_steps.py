@@ -8,7 +8,7 @@ before the steps, or a first step prolonged by the fraction, were tried: 1.22 an
 used here goes with every model, since it needs no more than the cells of its particles.
 """
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from typing import Any
 
@@ -63,7 +63,10 @@ class Fractions:
         return cls(tuple(matrices))
 
 
-def learn_fractions(frames: Frames, n_cells: int, lag: int, estimator: str = "pooled") -> Fractions:
+def learn_fractions(
+    frames: Frames, n_cells: int, lag: int, estimator: str = "pooled",
+    weights: Callable[[int], NDArray[np.int64]] | None = None,
+) -> Fractions:  # fmt: skip
     """Matrices of all lags shorter than a step.
 
     Parameters
@@ -75,15 +78,18 @@ def learn_fractions(frames: Frames, n_cells: int, lag: int, estimator: str = "po
         Frames in a step.
     estimator : {"literal", "per_step", "pooled"}
         How counts become probabilities.
+    weights : callable, optional
+        From a lag to how many times the step of that lag from each frame counts; 1 by default.
 
     Returns
     -------
     Fractions
     """
-    cells = np.asarray(frames.cells)
-    return Fractions(
-        tuple(transition_matrix(count_moves(cells, n_cells, shorter), estimator) for shorter in range(1, lag))
-    )
+    cells, matrices = np.asarray(frames.cells), []
+    for shorter in range(1, lag):
+        counts = count_moves(cells, n_cells, shorter, step_weights=weights and weights(shorter))
+        matrices.append(transition_matrix(counts, estimator))
+    return Fractions(tuple(matrices))
 
 
 def mixing_by_frame(

@@ -3,12 +3,17 @@
 
 from dataclasses import dataclass
 
+import numpy as np
+from numpy.typing import NDArray
+
 from bedchain.errors import UserError
 
 # of the learning window; the paper's 10-15 s is fitted on 10-13.5 s and validated on 13.5-15 s
 FIT_SHARE = 0.7
 # a window holds few bubbles: more starts cost time and add little
 MOST_STARTS = 5
+# blocks of the learning window that are left out in turn
+FOLDS = 5
 
 
 @dataclass(frozen=True)
@@ -62,6 +67,52 @@ def split(learning: slice) -> tuple[slice, slice]:
             "and validate on the rest: lengthen learning, or write frames more often"
         )
     return slice(learning.start, cut + 1), slice(cut, learning.stop)
+
+
+def blocks_of(learning: slice) -> list[slice]:
+    """The learning window in `FOLDS` blocks as equal as may be, each with both of its ends.
+
+    Parameters
+    ----------
+    learning : slice
+        Frames of the window.
+
+    Returns
+    -------
+    list of slice
+        The last frame of a block is the first of the next one.
+
+    Raises
+    ------
+    UserError
+        A block has fewer than two frame intervals.
+    """
+    intervals = learning.stop - 1 - learning.start
+    if intervals < 2 * FOLDS:
+        raise UserError(
+            f"the learning window holds {intervals + 1} frames, too few to leave each of {FOLDS} blocks "
+            "out in turn: lengthen learning, or write frames more often"
+        )
+    edges = [learning.start + round(number * intervals / FOLDS) for number in range(FOLDS + 1)]
+    return [slice(start, end + 1) for start, end in zip(edges, edges[1:], strict=False)]
+
+
+def steps_outside(block: slice, learning: slice, lag: int) -> NDArray[np.int64]:
+    """Weight of each step in the learning window: 1 where it has no frame inside a block, else 0.
+
+    Parameters
+    ----------
+    block, learning : slice
+        Frames of the run; the ends of the block do not count as inside.
+    lag : int
+        Frames in a step.
+
+    Returns
+    -------
+    (n_frames - lag,) int64 array
+    """
+    first = np.arange(learning.start, learning.stop - lag)
+    return ((first + lag <= block.start) | (first >= block.stop - 1)).astype(np.int64)
 
 
 def starts_in(part: slice, spacing: int, run: int = 0) -> list[Start]:

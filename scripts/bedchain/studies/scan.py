@@ -16,6 +16,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from bedchain.chains import registry
+from bedchain.chains.between_steps import Fractions, mixing_by_frame
 from bedchain.chains.chain import Chain
 from bedchain.measures.mixing import Splits, remaining_from_positions
 from bedchain.studies.candidates import Candidate, grid_of
@@ -122,6 +123,14 @@ def learned(candidate: Candidate, frames: Frames, task: Task) -> Chain:
     )
 
 
+def relearned(candidate: Candidate, frames: Frames, task: Task) -> Callable[[NDArray[np.int64]], Chain]:
+    """`learned` as a function of the weights of the steps; models that can count but once."""
+    grid = grid_of(candidate, task.grid)
+    return registry.relearner(
+        candidate.model, frames, grid, candidate.lag, task.estimator, **candidate.options
+    )
+
+
 def observed_curves(run: Realisation, start: Start, splits: Splits) -> NDArray[np.float64]:
     """Mixing curves of the DEM from a start, (length + 1, 4)."""
     values = run.values[start.frame : start.last + 1]
@@ -129,12 +138,17 @@ def observed_curves(run: Realisation, start: Start, splits: Splits) -> NDArray[n
 
 
 def predicted_curves(
-    chain: Chain, run: Realisation, start: Start, lag: int, splits: Splits
+    chain: Chain, run: Realisation, start: Start, lag: int, splits: Splits, fractions: Fractions | None = None
 ) -> NDArray[np.float64]:
     """A chain's expected mixing curves from a start, at every frame, (length + 1, 4).
 
-    Straight lines between two steps of the chain, so that all candidates are judged at the same frames.
+    Between two steps of the chain by its fractions of a step, or without them by straight lines, so that all
+    candidates are judged at the same frames. Lines serve the study of many lags (trade-off): up to 0.3 s they
+    err by 2 % more.
     """
+    if fractions is not None:
+        begin = run.leading_to(chain.grid, start.frame, lag)
+        return mixing_by_frame(chain, fractions, begin, splits, start.length)
     steps = -(-start.length // lag)
     curves = chain.mixing(run.leading_to(chain.grid, start.frame, lag), *splits, steps)
     return at_frames(curves, lag, start.length)

@@ -6,6 +6,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from bedchain.chains.between_steps import learn_fractions
 from bedchain.chains.chain import Chain
 from bedchain.measures.lagrangian import Places, Statistics, corrected, in_cells, statistics
 from bedchain.studies.candidates import Candidate, grid_of
@@ -87,11 +88,12 @@ def predict_held_out(
     grid = grid_of(candidate, task.grid)
     frames = run.frames(grid, learning)
     chain, learn_s = timed(lambda: learned(candidate, frames, task))
+    fractions = learn_fractions(frames, grid.n_cells, lag, task.estimator)
     rng = np.random.default_rng(seed)
     curves, densities, drawn = [], [], []
     for start, batch in zip(held.starts, held.batches, strict=True):
         begin = held.runs[start.run].leading_to(chain.grid, start.frame, lag)
-        curves.append(predicted_curves(chain, held.runs[start.run], start, lag, task.splits))
+        curves.append(predicted_curves(chain, held.runs[start.run], start, lag, task.splits, fractions))
         inside = held.moments[held.moments <= start.length]
         shares = batch_shares(chain, begin, batch, inside, lag)
         densities.append(regrid(shares, chain.grid, held.grid))

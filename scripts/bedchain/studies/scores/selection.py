@@ -1,39 +1,44 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Selection of each model's setting: fitted on the first part of the learning window, validated on the rest.
+"""Selection of each model's setting: five blocks of the learning window are left out in turn and predicted.
 
 No frame after the learning window is used: the run is cut at its end.
 """
 
 import logging
 from collections.abc import Sequence
+from functools import partial
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 import pandas as pd
+from numpy.typing import NDArray
 
+from bedchain.chains.between_steps import Fractions, learn_fractions
+from bedchain.chains.chain import Chain
 from bedchain.errors import DataError, UserError
 from bedchain.studies.candidates import Candidate, grid_of
-from bedchain.studies.marked_starts import split, starts_in
+from bedchain.studies.marked_starts import FOLDS, Start, blocks_of, starts_in, steps_outside
 from bedchain.studies.scan import (
     Task,
     learned,
     named,
     observed_curves,
     predicted_curves,
-    rms_over_starts,
+    relearned,
     running_cost,
     scan,
     timed,
 )
-from bedchain.studies.scores.held_out import INTERVAL_SEED
 from bedchain.trajectory.realisations import Realisation
+from bedchain.uncertainty.bands import block_band
 
+FOLD_COLUMNS = [f"fold_{number}" for number in range(1, FOLDS + 1)]
 LOG = logging.getLogger(__name__)
 
 
 def validated(candidate: Candidate, run: Realisation, learning: slice, task: Task) -> dict[str, Any]:
-    """Validation of a candidate: fitted on the first part of the learning window, judged on the rest.
+    """Validation of a candidate: learned without each block of the learning window, judged on that block.
 
     Parameters
     ----------
@@ -47,34 +52,102 @@ def validated(candidate: Candidate, run: Realisation, learning: slice, task: Tas
     Returns
     -------
     dict
-        validation_rms, ci_low, ci_high (of the four curves over all starts and frames), starts, learn_s,
-        curves_s and paths_s (`running_cost`), problem (empty without one).
+        validation_rms (of the four curves over all folds, starts and frames) with ci_low and ci_high from
+        leaving each fold out, fold_1 to fold_5 (the rms of each), starts, learn_s, curves_s and paths_s
+        (`running_cost`), problem (empty without one).
     """
+    blocks = blocks_of(learning)
     result: dict[str, Any] = {"validation_rms": np.nan, "ci_low": np.nan, "ci_high": np.nan}
+    result |= dict.fromkeys(FOLD_COLUMNS, np.nan)
     result |= {"starts": 0, "learn_s": np.nan, "curves_s": np.nan, "paths_s": np.nan, "problem": ""}
-    fit, part = split(learning)
-    starts = starts_in(part, task.spacing)
-    if candidate.lag > min(start.length for start in starts):
-        lag_s, longest_s = (n * run.interval_s for n in (candidate.lag, min(s.length for s in starts)))
+    judged = [_with_past(block, candidate.lag) for block in blocks]
+    starts = [starts_in(block, task.spacing) for block in judged]
+    longest = min(start.length for of_block in starts for start in of_block)
+    if candidate.lag > longest:
+        lag_s, longest_s = (n * run.interval_s for n in (candidate.lag, longest))
         return result | {"problem": f"lag {lag_s:g} s is longer than the {longest_s:g} s to validate"}
     try:
-        frames = run.frames(grid_of(candidate, task.grid), fit)
+        frames = run.frames(grid_of(candidate, task.grid), learning)
         chain, learn_s = timed(lambda: learned(candidate, frames, task))
-        pairs = [
-            (
-                predicted_curves(chain, run, start, candidate.lag, task.splits),
-                observed_curves(run, start, task.splits),
-            )
-            for start in starts
-        ]
-        cost = running_cost(chain, run.leading_to(chain.grid, starts[0].frame, candidate.lag), task)
+        again = relearned(candidate, frames, task)
+        reach = 2 * candidate.lag if candidate.model == "dynamic" else candidate.lag
+        squares = []
+        for block, of_block in zip(blocks, starts, strict=True):
+            weights = steps_outside(block, learning, reach)
+            without = again(np.pad(weights, (0, reach - candidate.lag)))
+            shorter = learn_fractions(
+                frames, chain.grid.n_cells, candidate.lag, task.estimator,
+                partial(steps_outside, block, learning),
+            )  # fmt: skip
+            squares.append(_squares(without, shorter, run, of_block, task))
+        cost = running_cost(chain, run.leading_to(chain.grid, starts[-1][0].frame, candidate.lag), task)
     except DataError as problem:
         return result | {"problem": str(problem)}
-    error, low, high = rms_over_starts([model[1:] - dem[1:] for model, dem in pairs], INTERVAL_SEED)
-    return result | {
-        "validation_rms": error, "ci_low": low, "ci_high": high, "starts": len(starts),
-        "learn_s": learn_s, **cost,
+    error, ends = _over_folds(squares)
+    folds = [float(np.sqrt(np.mean(square))) for square in squares]
+    return result | dict(zip(FOLD_COLUMNS, folds, strict=True)) | {
+        "validation_rms": error, "ci_low": ends[0], "ci_high": ends[1],
+        "starts": sum(map(len, starts)), "learn_s": learn_s, **cost,
     }  # fmt: skip
+
+
+def _with_past(block: slice, lag: int) -> slice:
+    """A block less the frames from which a chain that looks back two lags cannot start."""
+    first = min(2 * lag, block.stop - 1 - lag)
+    return slice(max(block.start, first), block.stop)
+
+
+def _squares(
+    chain: Chain, fractions: Fractions, run: Realisation, starts: Sequence[Start], task: Task
+) -> NDArray[np.float64]:
+    """Squared errors of the curves from all starts in a block, (n_times, 4)."""
+    errors = [
+        predicted_curves(chain, run, start, fractions.lag, task.splits, fractions)[1:]
+        - observed_curves(run, start, task.splits)[1:]
+        for start in starts
+    ]
+    return np.concatenate(errors) ** 2
+
+
+def _over_folds(squares: Sequence[NDArray[np.float64]]) -> tuple[float, tuple[float, float]]:
+    """Rms over all folds, and its 95 % band from leaving each fold out."""
+    error = np.sqrt(np.nanmean(np.concatenate(squares)))
+    left_out = [
+        np.sqrt(np.nanmean(np.concatenate([*squares[:fold], *squares[fold + 1 :]])))
+        for fold in range(len(squares))
+    ]
+    low, high = block_band(error, np.array(left_out))
+    return float(error), (max(0.0, float(low)), float(high))
+
+
+def disagreement(table: pd.DataFrame, rule: pd.Series) -> str:
+    """Where validation prefers another setting of the rule's model beyond its band; empty where it does not.
+
+    Parameters
+    ----------
+    table : DataFrame
+        Of `select`.
+    rule : Series
+        Its row of the setting by rule.
+
+    Returns
+    -------
+    str
+        Both settings with their errors, and the band of the difference of their mean squares over the folds.
+    """
+    alike = table[(table["model"] == rule["model"]) & table["validation_rms"].notna()]
+    if alike.empty or np.isnan(rule["validation_rms"]):
+        return ""
+    best = alike.loc[alike["validation_rms"].idxmin()]
+    differences = best[FOLD_COLUMNS].to_numpy(float) ** 2 - rule[FOLD_COLUMNS].to_numpy(float) ** 2
+    left_out = [np.delete(differences, fold).mean() for fold in range(FOLDS)]
+    _, high = block_band(differences.mean(), np.array(left_out))
+    if not high < 0:
+        return ""
+    settings = [
+        f"{row['cell_m']:.3g} m and {row['lag_s']:g} s ({row['validation_rms']:.3g})" for row in (best, rule)
+    ]
+    return f"validation prefers {settings[0]} to {settings[1]} by the rule, beyond its band: try both"
 
 
 def select(
