@@ -72,7 +72,7 @@ def test_another_grid_runs_the_cells_and_what_follows(finished, case):
     [
         ("cells_colour", "red", {"plot_cells": 1}),
         ("cost_colour", "red", {"plot_cost": 1}),
-        ("distribution_colour_map", "magma", {"plot_distribution": 2}),
+        ("distribution_colour_map", "magma", {"plot_distribution": 3}),
         ("dem_colour", "red", {"plot_mixing": 2, "plot_chapman_kolmogorov": 1}),
         (
             "static_colour",

@@ -33,8 +33,8 @@ class Preset:
     Attributes
     ----------
     name : str
-    cell_m, lag_s : float
-        Side of a cell [m], time of a step [s].
+    cell_m, lag_s : float or "auto"
+        Side of a cell [m], time of a step [s]; auto leaves it to choose_chain, from each bed's particles.
     model : str
         A name in `bedchain.models.LEARNERS`.
     cost_s : float
@@ -46,8 +46,8 @@ class Preset:
     """
 
     name: str
-    cell_m: float
-    lag_s: float
+    cell_m: float | str
+    lag_s: float | str
     model: str
     cost_s: float = math.nan
     error_floors: float = math.nan
@@ -129,11 +129,14 @@ def with_preset(case: Case, preset: Preset, file: Path = PRESETS) -> Case:
     CaseError
         The preset does not go with the case.
     """
-    lag_s = _lag(case, preset.lag_s)
+    lag_s = preset.lag_s if isinstance(preset.lag_s, str) else _lag(case, preset.lag_s)
     bed, cells, lines, diameter = case["bed"], case["cells"], case["mixing"], case["particles"]["diameter_m"]
     own = [1 if cells[name] == AUTO else cells[name] for name in ("columns", "rows")]
-    columns = count_near(bed["width_m"], preset.cell_m, lines["split_x_m"], own[0], diameter)
-    rows = count_near(bed["height_m"], preset.cell_m, lines["split_z_m"], own[1], diameter)
+    columns: int | str = AUTO
+    rows: int | str = AUTO
+    if not isinstance(preset.cell_m, str):
+        columns = count_near(bed["width_m"], preset.cell_m, lines["split_x_m"], own[0], diameter)
+        rows = count_near(bed["height_m"], preset.cell_m, lines["split_z_m"], own[1], diameter)
     changed = case | {
         "cells": cells | {"columns": columns, "rows": rows},
         "chain": case["chain"] | {"lag_s": lag_s, "models": [preset.model]},
@@ -155,16 +158,17 @@ def _preset(file: Path, name: str, given: Any, lines: Lines) -> Preset:
         _check_setting(place, key, given.get(key), known)
     measured = {key: float(given[key]) for key in MEASURED if key in given}
     about = str(given.get("measured_on", ""))
-    return Preset(
-        name, float(given["cell_m"]), float(given["lag_s"]), given["model"], **measured, measured_on=about
-    )
+    cell_m, lag_s = (given[key] if given[key] == AUTO else float(given[key]) for key in SETTINGS[:2])
+    return Preset(name, cell_m, lag_s, given["model"], **measured, measured_on=about)
 
 
 def _check_setting(place: str, key: str, value: Any, models: list[str]) -> None:
     keys = (*SETTINGS, *MEASURED, *OTHERS)
     if key not in keys:
         raise UserError(f"{place}: {key} is an unknown key{guess(key, keys)}; known are {', '.join(keys)}")
-    if key in OTHERS or (value in models if key == "model" else is_positive(value)):
+    if key in OTHERS or (key in SETTINGS[:2] and value == AUTO):
+        return
+    if value in models if key == "model" else is_positive(value):
         return
     wanted = f"one of {', '.join(models)}" if key == "model" else "a number above 0"
     raise UserError(f"{place}: {key} is {value!r}, not {wanted}; {MADE_BY}")

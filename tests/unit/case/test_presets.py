@@ -6,6 +6,7 @@ import copy
 import pytest
 import yaml
 
+from bedchain.case.chosen import is_auto
 from bedchain.case.load import give_hint, load_case
 from bedchain.case.presets import Preset, preset_named, read_presets, with_preset
 from bedchain.errors import CaseError, UserError
@@ -142,3 +143,11 @@ def test_the_old_key_beside_the_new_one_is_refused(tmp_path):
     file.write_text(f"{text}\npreset: fast\nfidelity: accurate\n")
     with pytest.raises(CaseError, match="fidelity: is an unknown key"):
         load_case(file)
+
+
+def test_a_preset_may_leave_cells_and_lag_to_the_rule(short, tmp_path):
+    file = tmp_path / "presets.yaml"
+    file.write_text("own: {cell_m: auto, lag_s: auto, model: dynamic}\n")
+    changed = with_preset(short, read_presets(file)["own"])
+    assert is_auto(changed) and changed["chain"]["models"] == ["dynamic"]
+    assert changed["cells"] == {"columns": "auto", "rows": "auto"} and changed["chain"]["lag_s"] == "auto"
