@@ -109,8 +109,10 @@ def scan(
     return results
 
 
-def learned(candidate: Candidate, frames: Frames, task: Task) -> Chain:
-    """The chain of a candidate from frames on its grid.
+def learned(
+    candidate: Candidate, frames: Frames, task: Task, step_weights: NDArray[np.int64] | None = None
+) -> Chain:
+    """The chain of a candidate from frames on its grid; steps are weighted as in `registry.learn`.
 
     Raises
     ------
@@ -119,15 +121,7 @@ def learned(candidate: Candidate, frames: Frames, task: Task) -> Chain:
     """
     grid = grid_of(candidate, task.grid)
     return registry.learn(
-        candidate.model, frames, grid, candidate.lag, task.estimator, None, **candidate.options
-    )
-
-
-def relearned(candidate: Candidate, frames: Frames, task: Task) -> Callable[[NDArray[np.int64]], Chain]:
-    """`learned` as a function of the weights of the steps; models that can count but once."""
-    grid = grid_of(candidate, task.grid)
-    return registry.relearner(
-        candidate.model, frames, grid, candidate.lag, task.estimator, **candidate.options
+        candidate.model, frames, grid, candidate.lag, task.estimator, step_weights, **candidate.options
     )
 
 

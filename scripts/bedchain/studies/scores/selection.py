@@ -25,7 +25,6 @@ from bedchain.studies.scan import (
     named,
     observed_curves,
     predicted_curves,
-    relearned,
     running_cost,
     scan,
     timed,
@@ -69,12 +68,12 @@ def validated(candidate: Candidate, run: Realisation, learning: slice, task: Tas
     try:
         frames = run.frames(grid_of(candidate, task.grid), learning)
         chain, learn_s = timed(lambda: learned(candidate, frames, task))
-        again = relearned(candidate, frames, task)
         reach = 2 * candidate.lag if candidate.model == "dynamic" else candidate.lag
         squares = []
         for block, of_block in zip(blocks, starts, strict=True):
             weights = steps_outside(block, learning, reach)
-            without = again(np.pad(weights, (0, reach - candidate.lag)))
+            padded = np.pad(weights, (0, reach - candidate.lag))
+            without = learned(candidate, frames, task, padded)
             shorter = learn_fractions(
                 frames, chain.grid.n_cells, candidate.lag, task.estimator,
                 partial(steps_outside, block, learning),
