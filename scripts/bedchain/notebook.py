@@ -134,7 +134,8 @@ class Bed:
         Returns
         -------
         DataFrame
-            time_s, group (left, right, low, up), frames_1, chain_1, low_1, high_1.
+            time_s, group (left, right, low, up), frames_1, chain_1, low_1, high_1; the last two are the 95 %
+            band, NaN where the learning window is too short for one.
         """
         splits = splits_m or (self.run.width_m / 2, self.run.height_m / 2)
         lag, which = self._lag(chain.lag_s), Window(*compared).frames(self.run.times_s)

@@ -26,7 +26,8 @@ def test_the_lines_of_the_readme_run(tmp_path, monkeypatch):
     exec(lines, names)  # noqa: S102
     curves, matrix = names["curves"], names["matrix"]
     assert set(curves["group"]) == {"left", "right", "low", "up"} and len(curves) == 4 * 21
-    assert (curves["low_1"] <= curves["high_1"]).all()
+    # a window too short for a band has none
+    assert not (curves["low_1"] > curves["high_1"]).any()
     assert np.abs(curves["frames_1"] - curves["chain_1"]).max() < 0.3
     np.testing.assert_allclose(matrix.sum(axis=1), 1)
     np.testing.assert_allclose(names["model"].transition_matrix, matrix.toarray())
