@@ -26,12 +26,13 @@ def by_quantity(rows):
     return {row["quantity"]: row for row in rows}
 
 
-def test_bands_hold_the_middle_of_the_replicates():
-    shifts = np.linspace(-0.1, 0.1, 101)
-    replicates = MODEL + shifts[:, None, None]
-    row = by_quantity(model_metrics("static", MODEL, DEM, replicates))["error_signed_left"]
+def test_bands_come_from_chains_without_a_block():
+    shifts = np.linspace(-0.02, 0.02, 5)
+    left_out = MODEL + shifts[:, None, None]
+    row = by_quantity(model_metrics("static", MODEL, DEM, left_out))["error_signed_left"]
+    half = 2.776445 * np.sqrt(0.8 * (shifts**2).sum())
     assert (row["source"], row["unit"]) == ("static", "1")
-    assert [row["value"], row["ci_low"], row["ci_high"]] == pytest.approx([0.2, 0.105, 0.295])
+    assert [row["value"], row["ci_low"], row["ci_high"]] == pytest.approx([0.2, 0.2 - half, 0.2 + half])
     assert np.isnan(by_quantity(model_metrics("static", MODEL, DEM))["error_signed_left"]["ci_low"])
 
 
@@ -56,13 +57,18 @@ def test_units_of_the_report_come_from_its_names():
 
 def test_mean_of_correlated_data_has_a_wide_band():
     rng, widths = np.random.default_rng(4), []
-    for _ in range(6):
+    for _ in range(40):
         independent, held = rng.normal(10, 1, 2000), np.repeat(rng.normal(10, 1, 100), 20)
         rows = [mean_metric("a", series, "Pa") for series in (independent, held)]
         widths.append([row["ci_high"] - row["ci_low"] for row in rows])
-    # four standard errors, 1 / sqrt(2000) and 1 / sqrt(100); blocks as long as three memories are few, and
-    # their spread comes out 5 and 12 % low; the mean of six is known to 4 %
-    assert np.mean(widths, axis=0) == pytest.approx([0.95 * 4 / 2000**0.5, 0.88 * 4 / 100**0.5], rel=0.1)
+    # twice 2.78 standard errors, 1 / sqrt(2000) and 1 / sqrt(100), of which five blocks know 0.94 on average
+    expected = 2 * 2.776 * 0.94 / np.sqrt([2000, 100])
+    assert np.mean(widths, axis=0) == pytest.approx(expected, rel=0.2)
+
+
+def test_mean_of_a_series_too_short_has_no_band():
+    row = mean_metric("a", np.sin(np.linspace(0, 3, 100)), "Pa")
+    assert np.isnan(row["ci_low"]) and np.isfinite(row["value"])
 
 
 def test_window_outside_the_series_is_refused():
