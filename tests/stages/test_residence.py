@@ -35,6 +35,7 @@ def belt(tmp_path_factory):
     about = {
         "times_s": (INTERVAL_S * np.arange(n_frames)).tolist(), "number": number, "width_m": 0.5,
         "height_m": 0.1, "columns": ["x", "z", "vx", "vz"], "complete": False,
+        "frame_interval_s": INTERVAL_S,
     }  # fmt: skip
     (folder / "trajectory.json").write_text(json.dumps(about))
     return BedFiles(folder / "trajectory.npy", folder / "trajectory.json", folder / "cells.npz")

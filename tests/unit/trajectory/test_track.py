@@ -101,7 +101,8 @@ def test_a_stored_track_is_written_anew_at_even_times(tmp_path):
     values[:, 0, 0], values[:, 1, 0] = x, 0.005
     files = tmp_path / "trajectory.npy", tmp_path / "trajectory.json"
     np.save(files[0], values)
-    about = {"times_s": times.tolist(), "number": 1, "columns": ["x", "z", "vx", "vz"], "width_m": 0.04}
+    about = {"times_s": times.tolist(), "number": 1, "columns": ["x", "z", "vx", "vz"]}
+    about |= {"width_m": 0.04, "height_m": 0.01, "frame_interval_s": None}
     files[1].write_text(json.dumps(about))
     words = resample(*files, STEP_S, 0.04)
     even, said = open_trajectory(*files)
