@@ -205,6 +205,8 @@ def survey(settings: FrameSettings, folder: Path, whole_box: bool = True) -> Sur
             notes.append(f"{number} {text}")
     assert first is not None
     values = load(entries[0], settings)
+    if not values:
+        raise UserError(f"{entries[0].file}: no column of use; name them in frames.columns")
     periodic = list(first.periodic)
     from_header = box is not None
     if box is None:

@@ -103,7 +103,7 @@ def collection(path: Path) -> Iterator[tuple[float, Path]]:
 def _values(path: Path, renamed: Mapping[str, str]) -> Columns:
     """Points and their data; the numbers in the header are compared with the size of the file first."""
     content = path.read_bytes()
-    if legacy_vtk.is_of_liggghts(content):
+    if legacy_vtk.is_early(content):
         of_file = legacy_vtk.read_values(content)
         values = _named(of_file.points, of_file.fields, {})
         places, arrays = our_columns(list(values), renamed), list(values.values())

@@ -6,7 +6,7 @@ import pytest
 import pyvista
 
 from bedchain.errors import DataError
-from bedchain.trajectory.forms.legacy_vtk import is_of_liggghts, read_values
+from bedchain.trajectory.forms.legacy_vtk import is_early, read_values
 from made.forms import VTK_BOX, legacy_vtk, moving
 
 SERIES = moving(n_frames=1)
@@ -17,7 +17,7 @@ def test_values_are_those_that_vtk_reads(tmp_path, ascii_form):
     content = legacy_vtk(SERIES, 0, ascii_form)
     (tmp_path / "a.vtk").write_bytes(content)
     mesh, values = pyvista.read(tmp_path / "a.vtk"), read_values(content)
-    assert is_of_liggghts(content)
+    assert is_early(content)
     np.testing.assert_allclose(values.points, mesh.points, rtol=1e-6)
     assert set(values.fields) == set(mesh.point_data)
     for name, array in values.fields.items():
@@ -45,6 +45,16 @@ def test_a_header_with_a_fault_is_refused(old, new, ascii_form):
 def test_a_cut_file_is_refused(kept, ascii_form):
     with pytest.raises(DataError):
         read_values(legacy_vtk(SERIES, 0, ascii_form)[:kept])
+
+
+def test_scalars_and_vectors_are_read_too():
+    text = (
+        b"# vtk DataFile Version 3.0\nx\nASCII\nDATASET POLYDATA\nPOINTS 2 float\n0 1 2 3 4 5\nPOINT_DATA 2\n"
+    )
+    text += b"SCALARS id int 1\nLOOKUP_TABLE default\n7 8\nVECTORS v double\n1 2 3\n4 5 6\n"
+    values = read_values(text)
+    assert values.fields["id"].ravel().tolist() == [7, 8]
+    assert values.fields["v"].tolist() == [[1, 2, 3], [4, 5, 6]]
 
 
 def test_a_box_has_no_particles():

@@ -36,7 +36,7 @@ def test_a_number_in_a_header_takes_no_memory(tmp_path, word, number):
 
 def test_a_cut_file_is_refused(tmp_path):
     content = legacy_vtk(SERIES, 0)
-    with pytest.raises(DataError, match="cut off or damaged"):
+    with pytest.raises(DataError, match="cut off or damaged|no number"):
         load(tmp_path, content[: content.index(b"v 3 20") + 40])
 
 
