@@ -104,6 +104,10 @@ class Folder:
         """Ids of the processes of a kind."""
         return [number for number, line in self.processes().items() if re.search(VICTIMS[kind], line)]
 
+    def parts(self, pattern: str = "*") -> list[str]:
+        """Names of the folders of segments that are not complete."""
+        return sorted(part.stem for part in self.results.glob(f"dem/*/{pattern}.part"))
+
     def seconds_to_end(self, kinds: tuple[str, ...] = tuple(VICTIMS)) -> float:
         """Wait until no process of some kinds is left; returns how long that took [s].
 
@@ -140,8 +144,8 @@ def _without_times(content: bytes) -> bytes:
 def kill_one(folder: Folder, kind: str, rng: np.random.Generator, number: int = signal.SIGKILL) -> str | None:
     """Start a run, kill one of its processes at a random moment, and wait until all others have ended.
 
-    Two of three moments are while a solver runs: half of these in its first 0.3 s, when it reads a restart or
-    has hardly begun to write one, in so small a bed.
+    Three of four moments are in a segment: half of these in its first 0.3 s, when the solver reads a restart
+    or writes one already, in so small a bed. The others are at the start, as a rule in the settling.
 
     Returns
     -------
@@ -155,13 +159,16 @@ def kill_one(folder: Folder, kind: str, rng: np.random.Generator, number: int = 
         A solver is left after `ORPHANS_S`, or any process so long after the run has ended.
     """
     run = folder.start()
-    _wait_for(folder, kind if rng.random() < 1 / 3 else "rank", run)
-    time.sleep(float(rng.choice([rng.uniform(0, 0.3), rng.uniform(0, 6)])))
+    if rng.random() < 1 / 4:
+        _wait_for(folder, kind, run)
+    else:
+        _wait_for_segment(folder, run)
+    time.sleep(float(rng.choice([rng.uniform(0, 0.3), rng.uniform(0, 3)])))
     victims = folder.victims(kind) or _wait_for(folder, kind, run)
     if not victims:
         run.wait()
         return None
-    place = " ".join(sorted(part.stem for part in folder.results.glob("dem/*/*.part")))
+    place = " ".join(folder.parts())
     os.kill(int(rng.choice(victims)), number)
     took_s = folder.seconds_to_end(("mpirun", "rank"))
     run.wait(END_S)  # a driver that still imports its library ends after that
@@ -176,3 +183,11 @@ def _wait_for(folder: Folder, kind: str, run: subprocess.Popen[bytes]) -> list[i
         assert time.monotonic() < last, f"no {kind} before the deadline"
         time.sleep(0.01)
     return victims
+
+
+def _wait_for_segment(folder: Folder, run: subprocess.Popen[bytes]) -> None:
+    """Wait until a solver runs in a segment, or the run ends."""
+    last = time.monotonic() + START_S
+    while run.poll() is None and not (folder.victims("rank") and folder.parts("segment_*")):
+        assert time.monotonic() < last, "no segment before the deadline"
+        time.sleep(0.01)
