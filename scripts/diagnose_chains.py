@@ -95,7 +95,7 @@ def diagnose_chains(
 
     rows = estimator_rows(frames, run.grid, lag, list(chains))
     rows += counted_rows(looks, frames, remembered)
-    before = run.up_to(learning.start_s, lag)
+    before = run.up_to(learning.start_s, lag, run.grid)
     maps: list[pd.DataFrame] = []
     for name, markov in with_matrix.items():
         options = settings.options.get(name, {})
@@ -122,7 +122,7 @@ def diagnose_chains(
         paths = np.array([now.copy() for now in chain.paths(before, len(times) - 1, next(random))])
         steps = [one // lag for one in lags]
         rows += path_rows(name, in_cells(times, paths, run.grid), run.grid, top, steps)
-    start = run.up_to(comparison.start_s, lag)
+    start = run.up_to(comparison.start_s, lag, run.grid)
     compared = run.window(comparison)
     rows += index_rows(chains, start, compared, splits, lag, random)
     write_csv(table(rows), diagnostics)

@@ -110,7 +110,7 @@ def chain_places(
         Frames of the DEM between two of the film, and frames of the film [1].
     """
     lag = lag_frames(chain.lag_s, run.interval_s)
-    start = run.up_to(comparison.start_s, lag)
+    start = run.up_to(comparison.start_s, lag, chain.grid)
     for_paths, for_places = rng.spawn(2)
     paths = chain.paths(start, (film[1] - 1) * film[0] // lag, for_paths)
     shares = for_places.random((2, start.x_m.shape[1]))

@@ -128,9 +128,9 @@ class Realisation:
         times = self.times_s[0] + self.interval_s * np.arange(first, frame + 1)
         return self._frames(times, values, cells_of(grid, values, first, self.y_row))
 
-    def up_to(self, time_s: float, lag: int) -> Frames:
-        """`leading_to` the frame at a time [s], with the stored cells, of the particles that are in it."""
-        return self.leading_to(self.grid, frame_at(self.times_s, time_s), lag).seen_last()
+    def up_to(self, time_s: float, lag: int, grid: Grid) -> Frames:
+        """`leading_to` the frame at a time [s], of the particles that are in it."""
+        return self.leading_to(grid, frame_at(self.times_s, time_s), lag).seen_last()
 
     def _cells(self, grid: Grid, values: NDArray[np.floating], first: int) -> NDArray[np.int32]:
         if self.stored is not None and grid == self.stored.grid:
