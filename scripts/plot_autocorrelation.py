@@ -10,7 +10,7 @@ from matplotlib.axes import Axes
 
 from bedchain.errors import UserError, make_again
 from bedchain.figures.model_styles import BASELINE, label, model_styles
-from bedchain.figures.style import DOUBLE_COLUMN_IN, LINE_COLOUR, FigureFiles, figure_style
+from bedchain.figures.style import DOUBLE_COLUMN_IN, LINE_COLOUR, FigureFiles, figure_style, label_parts
 from bedchain.files import write_csv
 from bedchain.stage import run_stage
 
@@ -48,6 +48,7 @@ def plot_autocorrelation(lagrangian: Path, files: FigureFiles, dem_colour: str) 
             spans = sorted({f"{span:g} s" for span in part["span_s"]})
             auto.set_title(f"{name}, displacements over {' or '.join(spans)}", loc="left")
             msd.set(xscale="log", yscale="log", ylabel="mean-square displacement [cm²]")
+            label_parts(msd.xaxis, (1, 2, 5))
         for axes in panels[-1]:
             axes.set_xlabel("time between [s]")
         handles, labels = panels[0, 0].get_legend_handles_labels()

@@ -172,7 +172,7 @@ def _draw_group(
             area = axes.fill_between(time, *band_ends, color=style.colour, alpha=BAND_OPACITY, linewidth=0)
             entries[f"{label(model)}, 95 % band"] = (area, *line)
         else:
-            entries[f"{label(model)}, band unknown: window too short"] = (*line,)
+            entries[f"{label(model)}, no band: window too short"] = (*line,)
     line = [axes.axhline(mixed, color=MIXED_COLOUR, linewidth=0.8, linestyle=(0, (6, 2, 1, 2)))]
     return entries | {"well mixed": (*line,)}
 

@@ -8,10 +8,10 @@ import numpy as np
 import pandas as pd
 from matplotlib import pyplot as plt
 from matplotlib.axes import Axes
-from matplotlib.ticker import LogLocator, NullFormatter, NullLocator
+from matplotlib.ticker import NullFormatter
 
 from bedchain.errors import UserError, make_again
-from bedchain.figures.style import DOUBLE_COLUMN_IN, FigureFiles, figure_style
+from bedchain.figures.style import DOUBLE_COLUMN_IN, FigureFiles, figure_style, label_parts
 from bedchain.files import write_csv
 from bedchain.stage import run_stage
 
@@ -152,9 +152,8 @@ def _draw_front(axes: Axes, table: pd.DataFrame, name: str, title: str, unit: st
             textcoords="offset points", color=FRONT_COLOUR,
         )  # fmt: skip
     axes.set(xscale="log", yscale="log", xlabel="time to learn and to run [s]", ylabel=f"error [{unit}]")
-    axes.yaxis.set_major_locator(LogLocator(subs=(1, 1.5, 2, 3, 5)))
-    axes.yaxis.set_major_formatter("{x:g}")
-    axes.yaxis.set_minor_locator(NullLocator())
+    label_parts(axes.xaxis, (1, 3))
+    label_parts(axes.yaxis, (1, 1.5, 2, 3, 5))
     low, high = axes.get_ylim()
     axes.set_ylim(low / 1.15, high)
     axes.set_title(title, loc="left")

@@ -9,11 +9,9 @@ import numpy as np
 import pandas as pd
 from matplotlib import pyplot as plt
 from matplotlib.axes import Axes
-from matplotlib.axis import Axis
-from matplotlib.ticker import LogLocator, NullLocator
 
 from bedchain.errors import UserError
-from bedchain.figures.style import DOUBLE_COLUMN_IN, FigureFiles, figure_style
+from bedchain.figures.style import DOUBLE_COLUMN_IN, FigureFiles, figure_style, label_parts
 from bedchain.files import write_csv
 from bedchain.stage import run_stage
 from bedchain.studies.pareto import pareto_front
@@ -124,7 +122,7 @@ def _draw_costs(axes: Axes, table: pd.DataFrame) -> None:
     if known:
         axes.axvline(1.0, color="black", lw=0.6)
     axes.set(xscale="log", xlabel="cost over\nbase [1]" if known else "cost [s]")
-    _label_parts(axes.xaxis, (1, 2, 5, 7))
+    label_parts(axes.xaxis, (1, 2, 5, 7))
     axes.grid(axis="y", color="#e2e2e2", linewidth=0.5)
     axes.tick_params(labelleft=False)
 
@@ -151,20 +149,14 @@ def _draw_front(axes: Axes, table: pd.DataFrame) -> None:
             str(row["variant"]).replace("_", " "), (row["cost_over_base_1"], row["largest_floors_1"]),
             xytext=(4 - 8 * side, 0), textcoords="offset points", fontsize=6, va="center",
             ha=("left", "right")[side],
+            bbox={"facecolor": "white", "edgecolor": "none", "alpha": 0.85, "pad": 0.6},
         )  # fmt: skip
     axes.set(xscale="log", yscale="log", xlabel="cost over base [1]", ylabel="largest change\n[noise floors]")
-    _label_parts(axes.xaxis, (1, 1.5, 2, 3, 5, 7))
-    _label_parts(axes.yaxis, (1, 2, 5))
+    label_parts(axes.xaxis, (1, 1.5, 2, 3, 5, 7))
+    label_parts(axes.yaxis, (1, 2, 5))
     axes.set_title(
         "squares: the same bed, from other starts; dashed: nothing cheaper changes less", loc="left"
     )
-
-
-def _label_parts(axis: Axis, parts: tuple[float, ...]) -> None:
-    """Ticks of a logarithmic axis at these parts of each decade, as plain numbers."""
-    axis.set_major_locator(LogLocator(subs=parts))
-    axis.set_major_formatter("{x:g}")
-    axis.set_minor_locator(NullLocator())
 
 
 if rule := globals().get("snakemake"):

@@ -119,12 +119,12 @@ def write_chains(folder: Path, shape: Shape) -> None:
             smeared = (smeared + np.roll(smeared, 1, 1) + np.roll(smeared, -1, 1)) / 3
         curves = np.column_stack([curve(group, 0.4 + 0.2 * place, times) for group in GROUPS])
         spread = (
-            np.random.default_rng(place).normal(0, 0.03, (40, 1, 4)) * (1 - np.exp(START - times))[:, None]
+            np.random.default_rng(place).normal(0, 0.01, (5, 1, 4)) * (1 - np.exp(START - times))[:, None]
         )
         np.savez(
             folder / f"chain_{model}.npz", model=model, moments_s=MOMENTS, times_s=times, groups=list(GROUPS),
             batch_share=smeared.reshape(len(MOMENTS), -1), batch_share_monte_carlo=dem,
-            remaining_replicates=curves + spread,
+            remaining=curves, remaining_left_out=curves + spread, batch_share_left_out=smeared[:0],
         )  # fmt: skip
 
 

@@ -11,7 +11,6 @@ import yaml
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-import run_chain as run_chain_stage
 from assign_cells import Division, assign_cells
 from bedchain.case.load import load_case
 from bedchain.chains.registry import ModelSettings
@@ -132,8 +131,7 @@ def through_all_stages(folder, case):
 
 @settings(max_examples=50)
 @given(case_files())
-def test_a_random_case_ends_in_results_or_in_a_sentence(monkeypatch, content):
-    monkeypatch.setattr(run_chain_stage, "REPLICATES", 2)
+def test_a_random_case_ends_in_results_or_in_a_sentence(content):
     with tempfile.TemporaryDirectory() as folder:
         file = Path(folder) / "case.yaml"
         file.write_text(yaml.safe_dump(content), encoding="utf-8")

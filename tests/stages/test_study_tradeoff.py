@@ -34,7 +34,7 @@ CASE = {
     "particles": {"number": NUMBER}, "time": {"end_s": 3.5},
     "learning": {"start_s": 0.25, "end_s": 2.0},
     "comparison": {"start_s": 2.0, "end_s": 3.5, "repeats": REPEATS},
-    "cells": {"columns": 10, "rows": 10}, "mixing": {"split_z_m": SIZE / 2},
+    "cells": {"columns": 10, "rows": 10}, "mixing": {"split_z_m": SIZE / 2}, "chain": {"lag_s": 0.025},
 }  # fmt: skip
 TRACERS, CELLS_M, LAGS_S = (100, 10_000), (0.01, 0.02), (0.025, 0.1, 0.4, 1.0, 2.0)
 COSTS = ["learn_s", "run_s", "cost_s", "preset"]

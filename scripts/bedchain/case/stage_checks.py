@@ -10,7 +10,7 @@ from bedchain.physics.whole_numbers import is_multiple, nearest_multiple, ratio,
 WINDOWS = ("learning.start_s", "learning.end_s", "comparison.start_s", "comparison.end_s")
 HISTORY_LAGS = 4  # before the comparison, that a chain is given (`trajectory.realisations`)
 # defaults of the schema, which need no import of Matplotlib: it takes 0.3 s
-USUAL_MAPS = ("YlGnBu", "cividis")
+USUAL_MAPS = ("YlGnBu", "coolwarm")
 COLOURS = tuple(
     f"figures.{name}_colour"
     for name in (

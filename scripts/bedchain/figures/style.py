@@ -12,9 +12,11 @@ import matplotlib
 import matplotlib.pyplot as plt
 import numpy as np
 from matplotlib.axes import Axes
+from matplotlib.axis import Axis
 from matplotlib.collections import EllipseCollection, QuadMesh
 from matplotlib.colors import Colormap, Normalize
 from matplotlib.figure import Figure
+from matplotlib.ticker import LogLocator, NullLocator
 
 from bedchain.files import atomic_file
 from bedchain.trajectory.grid import Grid
@@ -104,6 +106,13 @@ def save_figure(figure: Figure, png: Path, pdf: Path, resolution_dpi: int) -> No
     for target, metadata in ((png, {"Software": None}), (pdf, {"CreationDate": None})):
         with atomic_file(target) as temporary:
             figure.savefig(temporary, dpi=resolution_dpi, metadata=metadata)
+
+
+def label_parts(axis: Axis, parts: tuple[float, ...]) -> None:
+    """Ticks of a logarithmic axis at these parts of each decade, as plain numbers."""
+    axis.set_major_locator(LogLocator(subs=parts))
+    axis.set_major_formatter("{x:g}")
+    axis.set_minor_locator(NullLocator())
 
 
 def footnote(figure: Figure, text: str) -> None:

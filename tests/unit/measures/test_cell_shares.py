@@ -8,7 +8,7 @@ from bedchain.measures.cell_shares import shares_inside
 from bedchain.measures.mixing import side_shares
 from bedchain.trajectory.grid import Grid
 
-SAMPLED = 0.02  # a plane through a cell, by 8 points along each of its axes
+SAMPLED = 0.02  # a plane through a cell by its points, and by the random places
 
 
 def test_a_tilted_plane_halves_the_cells_that_it_goes_through():
@@ -27,7 +27,7 @@ def test_a_tilted_plane_halves_the_cells_that_it_goes_through():
 )
 def test_volumes_on_each_side_of_a_round_bed_are_those_of_its_halves(grid):
     rng = np.random.default_rng(5)
-    x, z, y = (length * rng.random(200_000) for length in grid.size)
+    x, z, y = (length * rng.random(1_000_000) for length in grid.size)
     other = z if grid.axis == "horizontal" else y
     inside = np.hypot(x - 0.1, other - 0.1) < 0.1
     x, z, y = x[inside], z[inside], y[inside]

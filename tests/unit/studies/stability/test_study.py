@@ -10,8 +10,8 @@ from pathlib import Path
 import pandas as pd
 import pytest
 
-from bedchain.dem import processes
 from bedchain.errors import UserError
+from bedchain.lifetime import child_ends_with_parent
 from bedchain.studies.stability.settings import StabilitySetting
 from bedchain.studies.stability.study import limited, run_study
 from bedchain.studies.stability.theory import Limit
@@ -27,7 +27,7 @@ def test_a_setting_that_hangs_is_ended_with_all_that_it_started(tmp_path):
     noted = tmp_path / "pid"
 
     def hang():
-        child = subprocess.Popen(["sleep", "600"], preexec_fn=processes._end_with_parent)
+        child = subprocess.Popen(["sleep", "600"], preexec_fn=child_ends_with_parent())
         noted.write_text(str(child.pid))
         child.wait()
 
