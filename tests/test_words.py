@@ -21,6 +21,7 @@ def run(tmp_path):
     (tmp_path / "envs").mkdir()
     (tmp_path / "envs/setup.sh").write_text(SETUP)
     (tmp_path / "envs/activate.sh").write_text(ACTIVATE)
+    shutil.copy(ROOT / "envs/one_run.sh", tmp_path / "envs")
     (tmp_path / "stub").mkdir()
     (tmp_path / "stub/snakemake").write_text(SNAKEMAKE)
     (tmp_path / "stub/snakemake").chmod(0o755)

@@ -10,7 +10,10 @@ from made import ROOT
 from made.workflow import ALL, SCORES, STABLE, TRADEOFF, linked, modules_behind, opened
 
 SCRIPTS = ROOT / "scripts"
-OTHERS = {"validate_bed", "write_agreement", "estimate_cost"}
+OTHERS = {
+    *("validate_bed", "write_agreement", "estimate_cost"),
+    *("measure_residence", "plot_residence", "measure_segregation", "plot_segregation"),
+}
 BY_SHELL = {"verify_solver", "compare_peers", "study_stability", "study_tradeoff"}
 
 

@@ -35,7 +35,7 @@ CHAINS = {
 FIGURES = {
     *("plot_cells", "plot_cost", "plot_distribution", "plot_mixing", "plot_snapshot", "plot_difference"),
     *("plot_chapman_kolmogorov", "plot_timescales", "plot_stationarity", "plot_discussion", "make_film"),
-    "plot_choice",
+    *("plot_choice", "plot_modes"),
 }
 TABLES = {"write_table", "write_provenance", "discuss_errors", "write_report"}
 ALL = {"audit_scene"} | BED | CHAINS | FIGURES | TABLES
@@ -175,8 +175,14 @@ def snakemake(
 
 
 def modules_behind(script: Path) -> set[Path]:
-    """Files of the library that a script imports by the standard library's account, without packages' own."""
+    """Files of the library that a script imports by the standard library's account, no empty packages."""
     finder = ModuleFinder([str(script.parent)])
     finder.run_script(str(script))
     files = {Path(module.__file__) for module in finder.modules.values() if module.__file__}
-    return {file for file in files if file.name != "__init__.py"} - {script}
+    return {file for file in files if file.name != "__init__.py" or holds_code(file)} - {script}
+
+
+def holds_code(package: Path) -> bool:
+    """Whether the file of a package runs anything but its docstring."""
+    code = compile(package.read_text(encoding="utf-8"), str(package), "exec")
+    return not set(code.co_names) <= {"__doc__"}

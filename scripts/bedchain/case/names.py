@@ -8,6 +8,7 @@ NAME = re.compile(r"[A-Za-z0-9_][A-Za-z0-9._-]*\Z")
 NAME_RULE = "letters, digits, '.', '_' and '-' only, and no '.' or '-' at its start"
 # folders of results that are no case's
 RESERVED = {
+    "bands": "the study of error bars",
     "benchmark_core": "the benchmark of the Markov core",
     "bin": "the solver",
     "peers": "the study peers",

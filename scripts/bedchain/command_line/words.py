@@ -13,7 +13,7 @@ INTERNAL = "studies"  # of the paper's module in the Snakefile, nobody types it
 CHOICES = {
     "reference": ("archive", "simulate"),
     "stability": ("full", "reduced"),
-    "study": ("verify", "peers", "stability", "benchmark_core"),  # of write_readme.py
+    "study": ("verify", "peers", "stability", "benchmark_core", "bands"),  # of write_readme.py
 }
 # words of --config whose values are text, whatever they look like
 TEXTS = ("case", "preset", "fidelity", "reference", "stability", "study")
