@@ -4,6 +4,7 @@
 #   validate  a case against its measured profiles       scores   all chains, chosen by validation, tested once
 #   estimate  what a case will cost, before it runs      stability solvers and chains at their extremes
 #   tradeoff  what accuracy costs, of chains and of simulated beds; the presets
+#   bands     how often the 95 % bands hold the truth
 import shlex
 
 from bedchain.studies.tradeoff.bed_variants import variants_or_exit
@@ -100,6 +101,35 @@ rule study_stability:
         extent=WORDS.get("stability", "full"),
     shell:
         "python scripts/study_stability.py --folder {params.folder} --extent {params.extent:q} 2>&1 | tee {log} >&2"
+
+
+# How often the 95 % bands hold the truth, on processes with a known one and on this run's beds: snakemake --cores 2 bands
+BANDS = [NAME, *(["paper"] if WITH_PAPER and NAME != "paper" else [])]
+
+
+rule bands:
+    input:
+        "results/bands/coverage.csv",
+
+
+rule study_bands:
+    input:
+        code("study_bands"),
+        expand("results/{bed}/{file}", bed=BANDS, file=["trajectory.npy", "trajectory.json", "cells.npz"]),
+        cases=expand("cases/{bed}/case.yaml", bed=BANDS),
+        schema="cases/case.schema.yaml",
+    output:
+        table="results/bands/coverage.csv",
+    log:
+        "logs/study_bands.log",
+    benchmark:
+        "benchmarks/study_bands.tsv"
+    conda:
+        "../envs/python.yaml"
+    params:
+        beds=" ".join(BANDS),
+    shell:
+        "python scripts/study_bands.py --beds {params.beds} --output {output.table} 2>&1 | tee {log} >&2"
 
 
 # Against measured profiles, where a case has them: snakemake --cores 2 --config case=mueller validate

@@ -2,9 +2,10 @@
 """How often the 95 % bands hold the truth; write results/bands/coverage.csv.
 
 usage: python scripts/study_bands.py
-       python scripts/study_bands.py --beds paper:10 short:1.5
+       python scripts/study_bands.py --beds paper short:2.5
 
-A bed is a case with results, and the time from which it is steady [s].
+A bed is a case with results, and the time from which it is steady [s]: by default the start of its learning
+window.
 """
 
 import argparse
@@ -37,7 +38,7 @@ def study_bands(beds: Sequence[str], output: Path, samples: int = SAMPLES, windo
     Parameters
     ----------
     beds : sequence of str
-        ``<case>:<start in s>``, of cases with results.
+        ``<case>`` or ``<case>:<start in s>``, of cases with results.
     output : Path
         Table to make: the fields of `coverage.Covered`.
     samples, windows : int
@@ -55,19 +56,19 @@ def study_bands(beds: Sequence[str], output: Path, samples: int = SAMPLES, windo
 
 
 def rows_of_bed(bed: str) -> Iterator[Covered]:
-    """Coverage on a bed, ``<case>:<start in s>``.
+    """Coverage on a bed, ``<case>`` or ``<case>:<start in s>``.
 
     Raises
     ------
     UserError
         The word is no case and time, or the case has no results.
     """
-    name, _, start = bed.partition(":")
+    name, colon, start = bed.partition(":")
+    case, results = load_case(Path("cases") / name / "case.yaml"), Path("results") / name
     try:
-        start_s = float(start)
+        start_s = float(start) if colon else case["learning"]["start_s"]
     except ValueError:
         raise UserError(f"--beds {bed}: give a case and the time from which it is steady, paper:10") from None
-    case, results = load_case(Path("cases") / name / "case.yaml"), Path("results") / name
     files = BedFiles(*(results / file for file in ("trajectory.npy", "trajectory.json", "cells.npz")))
     if not (results / "cells.npz").exists():
         raise UserError(f"there is no {results / 'cells.npz'}: run ./run --config case={name} first")
@@ -83,7 +84,7 @@ def main() -> None:
     parser = argparse.ArgumentParser(
         description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter
     )
-    parser.add_argument("--beds", nargs="*", default=[], help="cases with results, such as paper:10")
+    parser.add_argument("--beds", nargs="*", default=[], help="cases with results, such as paper or paper:10")
     parser.add_argument("--output", type=Path, default=OUTPUT, help="csv to write")
     given = parser.parse_args()
     with report_user_errors():

@@ -14,7 +14,7 @@ OTHERS = {
     *("validate_bed", "write_agreement", "estimate_cost"),
     *("measure_residence", "plot_residence", "measure_segregation", "plot_segregation"),
 }
-BY_SHELL = {"verify_solver", "compare_peers", "study_stability", "study_tradeoff"}
+BY_SHELL = {"verify_solver", "compare_peers", "study_stability", "study_bands", "study_tradeoff"}
 
 
 @pytest.fixture(scope="module")
