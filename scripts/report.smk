@@ -3,12 +3,13 @@
 import re
 
 REPORT_FILES = [*BED_FILES, *(rules.paper_all.input if WITH_PAPER else [])]
-
-
-def figure_names(plot):
-    """Regular expression of the names of a rule's figures."""
-    row = FIGURE_RULES[plot]
-    return re.sub(r"{(\w+)}", lambda found: f"({row['wildcards'][found[1]]})", row["name"])
+# regular expression of the names of a rule's figures -> their caption
+CAPTIONS = {
+    re.sub(
+        r"{(\w+)}", lambda match: f"({row['wildcards'][match[1]]})", row["name"]
+    ): f"scripts/captions/{plot}.rst"
+    for plot, row in FIGURE_RULES.items()
+}
 
 
 rule write_report:
@@ -24,9 +25,6 @@ rule write_report:
     conda:
         "../envs/python.yaml"
     params:
-        captions={
-            **{figure_names(plot): f"scripts/captions/{plot}.rst" for plot in FIGURE_RULES},
-            "film": "scripts/captions/make_film.rst",
-        },
+        captions={**CAPTIONS, "film": "scripts/captions/make_film.rst"},
     script:
         "write_report.py"
