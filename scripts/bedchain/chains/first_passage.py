@@ -17,7 +17,7 @@ Set = NDArray[np.bool_]
 
 def first_passage_steps(matrix: sparse.csr_array, target: Set) -> Array:
     """Mean number of steps until a set of states is first entered, from each state; see `passage_moments`."""
-    return passage_moments(matrix, target)[0]
+    return _mean_and_system(matrix, target)[0]
 
 
 def passage_moments(matrix: sparse.csr_array, target: Set) -> tuple[Array, Array]:
@@ -38,17 +38,26 @@ def passage_moments(matrix: sparse.csr_array, target: Set) -> tuple[Array, Array
     mean, variance : (n_states,) array
         0 in the set, infinite where a particle may never reach the set [1].
     """
-    link = sparse.csr_array(matrix > 0)
-    arrives = _leads_to(link, target, np.ones_like(target))
-    strays = _leads_to(link, ~arrives, ~target)
-    mean, variance = np.where(target, 0.0, np.full((2, target.size), np.inf))
-    inner = np.flatnonzero(~target & ~strays)
+    mean, inner, system = _mean_and_system(matrix, target)
+    variance = mean.copy()
     if inner.size:
-        system = sparse.csc_array(sparse.eye_array(inner.size) - matrix[inner][:, inner])
-        mean[inner] = solved(system, np.ones(inner.size))
         second = solved(system, 2 * mean[inner] - 1)
         variance[inner] = np.maximum(second - mean[inner] ** 2, 0.0)
     return mean, variance
+
+
+def _mean_and_system(
+    matrix: sparse.csr_array, target: Set
+) -> tuple[Array, NDArray[np.int64], sparse.csc_array]:
+    """Mean passage steps, the states outside the set that surely reach it, and ``I - Q`` of them."""
+    link = sparse.csr_array(matrix > 0)
+    arrives = _leads_to(link, target, np.ones_like(target))
+    strays = _leads_to(link, ~arrives, ~target)
+    mean, inner = np.where(target, 0.0, np.inf), np.flatnonzero(~target & ~strays)
+    system = sparse.csc_array(sparse.eye_array(inner.size) - matrix[inner][:, inner])
+    if inner.size:
+        mean[inner] = solved(system, np.ones(inner.size))
+    return mean, inner, system
 
 
 def passage_distribution(matrix: sparse.csr_array, target: Set, start: Array, steps: int) -> Array:
