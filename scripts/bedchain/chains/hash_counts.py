@@ -184,5 +184,6 @@ def table_entries(table: tuple[Any, ...]) -> tuple[NDArray[np.int64], NDArray[An
     """Keys in rising order, (n_used,), with their values, (n_used, n_columns)."""
     keys, values = table[:2]
     slots = np.flatnonzero(keys != FREE)
-    slots = slots[np.argsort(keys[slots])]
-    return keys[slots], values[slots]
+    keys, values = keys[slots], np.take(values, slots, axis=0)  # packed first: sorting reaches less memory
+    order = np.argsort(keys)
+    return keys[order], np.take(values, order, axis=0)
