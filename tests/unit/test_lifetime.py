@@ -2,6 +2,7 @@
 """Processes that end with their run, and a run that ends with all that it started."""
 
 import os
+import shlex
 import signal
 import subprocess
 import sys
@@ -20,7 +21,7 @@ RUNNER = """
 import subprocess, sys
 from bedchain.lifetime import begin_run, end_all_at_sigterm
 begin_run(); end_all_at_sigterm()
-shell = subprocess.Popen(["sh", "-c", f"{sys.executable} -c '{sys.argv[1]}' & echo $!; wait"])
+shell = subprocess.Popen(["sh", "-c", f"'{sys.executable}' -c '{sys.argv[1]}' & echo $!; wait"])
 shell.wait()
 """
 
@@ -36,8 +37,8 @@ def python(code, *words, run=None):
 
 
 def test_a_job_ends_when_its_shell_is_killed():
-    job = JOB.format(WAIT).replace("'", '"')
-    shell = f"import subprocess, sys; subprocess.run(['sh', '-c', '{sys.executable} -c \\'{job}\\'; true'])"
+    line = f"{shlex.join([sys.executable, '-c', JOB.format(WAIT)])}; true"
+    shell = f"import subprocess; subprocess.run(['sh', '-c', {line!r}])"
     with python(shell, run=os.getpid()) as outer:
         assert outer.stdout.readline() == "on\n"
         [middle, inner] = map(Path, (f"/proc/{number}" for number in descendants(outer.pid)))
