@@ -124,10 +124,8 @@ def read_points(file: Path) -> pd.DataFrame:
         ) from error
     if missing := [name for name in POINT_COLUMNS if name not in table]:
         raise UserError(f"{file} lacks the columns {', '.join(missing)}; add them")
-    if unknown := sorted(set(table["quantity"]) - set(QUANTITIES)):
-        raise UserError(
-            f"{file}: unknown quantity {', '.join(map(str, unknown))}; known: {', '.join(QUANTITIES)}"
-        )
+    if unknown := sorted(set(map(str, table["quantity"])) - set(QUANTITIES)):
+        raise UserError(f"{file}: unknown quantity {', '.join(unknown)}; known: {', '.join(QUANTITIES)}")
     numbers = table[list(POINT_COLUMNS[1:])].apply(pd.to_numeric, errors="coerce")
     if numbers.isna().to_numpy().any() or table.empty:
         row = int(numbers.isna().any(axis=1).argmax()) if len(table) else 0

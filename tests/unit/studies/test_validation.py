@@ -95,3 +95,10 @@ def test_bad_points_are_refused(tmp_path, text, said):
 def test_a_case_without_points_is_told_so(tmp_path):
     with pytest.raises(UserError, match="no measured points"):
         read_points(tmp_path / "measured.csv")
+
+
+def test_a_quantity_that_is_missing_beside_one_of_another_name_is_named(tmp_path):
+    file = tmp_path / "measured.csv"
+    file.write_text("quantity,height_m,position_x_m,value\n,0.01,0.02,0.5\nvoidge,0.01,0.02,0.5\n")
+    with pytest.raises(UserError, match="unknown quantity nan, voidge"):
+        read_points(file)
