@@ -15,6 +15,7 @@ import numpy as np
 import yaml
 
 from bedchain.lifetime import RUN
+from made.processes import wait_until
 from made.workflow import linked
 
 CASE = {
@@ -178,16 +179,12 @@ def kill_one(folder: Folder, kind: str, rng: np.random.Generator, number: int = 
 
 def _wait_for(folder: Folder, kind: str, run: subprocess.Popen[bytes]) -> list[int]:
     """Ids of the processes of a kind as soon as there are some; none where the run ends before."""
-    last = time.monotonic() + START_S
-    while not (victims := folder.victims(kind)) and run.poll() is None:
-        assert time.monotonic() < last, f"no {kind} before the deadline"
-        time.sleep(0.01)
-    return victims
+    wait_until(lambda: bool(folder.victims(kind)) or run.poll() is not None, START_S)
+    return folder.victims(kind)
 
 
 def _wait_for_segment(folder: Folder, run: subprocess.Popen[bytes]) -> None:
     """Wait until a solver runs in a segment, or the run ends."""
-    last = time.monotonic() + START_S
-    while run.poll() is None and not (folder.victims("rank") and folder.parts("segment_*")):
-        assert time.monotonic() < last, "no segment before the deadline"
-        time.sleep(0.01)
+    wait_until(
+        lambda: bool(folder.victims("rank") and folder.parts("segment_*")) or run.poll() is not None, START_S
+    )
