@@ -48,7 +48,8 @@ class ScoreFiles:
     Attributes
     ----------
     scores : Path
-        Scores of the chosen settings and of the case's own static chain.
+        Scores of the settings that validation chose, of the case's own static chain, and of the chain by the
+        rule of choose_chain (model ``chosen``).
     selection : Path
         Validation of all candidates.
     mixing, lagrangian : Path
@@ -142,11 +143,14 @@ def score_models(
     dem = [dem_statistics(held, number) for number in range(len(runs))]
     found = [{"model": "dem"} | row for row in dem_rows(held, dem)]
     trials: dict[str, Predictions] = {}
-    for name, one in {**chosen, BASELINE: Candidate("static", case.columns, case.rows, lag)}.items():
+    without_search = {BASELINE: Candidate("static", case.columns, case.rows, lag)}
+    without_search |= {registry.CHOSEN: rule} if rule else {}
+    for name, one in {**chosen, **without_search}.items():
         LOG.info("test of %s: %s", name, one.key)
         trials[name] = predict_held_out(one, which, held, task, case.seed)
         if name != BASELINE or one not in chosen.values():
             labels = named(one, grid, run.interval_s)
+            labels |= {"model": name} if name == registry.CHOSEN else {}
             found += [labels | row for row in score_rows(trials[name], held)]
     write_csv(table, files.selection)
     write_csv(pd.DataFrame(found).reindex(columns=COLUMNS), files.scores)
