@@ -78,16 +78,3 @@ block error : error of a mean over time, from blocks long enough to be independe
 validation : error in parts of the learning window of a chain learned on the rest of it; the test is on the
     comparison window.
 """
-
-import importlib
-from typing import Any
-
-__version__ = "0.1.0"
-__all__ = ["Bed", "__version__", "residence_in_cells_s", "to_deeptime", "write_chain"]
-
-
-def __getattr__(name: str) -> Any:
-    """Names of `bedchain.notebook`, imported at their first use: stages need none of them."""
-    if name not in __all__:
-        raise AttributeError(f"module 'bedchain' has no attribute {name!r}")
-    return getattr(importlib.import_module("bedchain.notebook"), name)

@@ -10,8 +10,8 @@ from pathlib import Path
 from typing import Any
 
 from bedchain.errors import UserError, report_user_errors
+from bedchain.fingerprints import check_noted, note_fingerprints, unreadable
 from bedchain.lifetime import end_with_run
-from bedchain.marks import check_noted, note_marks, unreadable
 
 LOG = logging.getLogger("bedchain")
 
@@ -100,7 +100,7 @@ def known_files(inputs: list[Path], outputs: list[Path]) -> Iterator[None]:
         file, wrong = damaged
         way_out = "move it away and give the same command again"
         raise UserError(f"{file} cannot be read ({wrong}): {way_out}") from error
-    note_marks(outputs)
+    note_fingerprints(outputs)
 
 
 def rule_names(rule: Any) -> dict[str, Any]:

@@ -67,6 +67,11 @@ def test_a_package_counts_where_it_holds_more_than_a_docstring(behind):
     assert behind("import bedchain.dem\n") == {"dem/__init__.py", "errors.py"}
 
 
+def test_no_package_of_the_library_runs_code_so_that_an_edit_of_its_glossary_reruns_nothing():
+    packages = sorted((ROOT / "scripts" / "bedchain").rglob("__init__.py"))
+    assert packages and not [file for file in packages if runs_code(file)]
+
+
 def test_modules_that_import_each_other_are_followed_once(behind):
     assert behind("import bedchain.dem.disk\n") == {
         "dem/__init__.py",

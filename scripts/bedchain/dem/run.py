@@ -41,7 +41,7 @@ from bedchain.dem.segments import (
 )
 from bedchain.errors import DataError, UserError
 from bedchain.files import atomic_file, atomic_folder, locked_folder, write_text
-from bedchain.marks import note_marks
+from bedchain.fingerprints import note_fingerprints
 from bedchain.trajectory.store import read_manifest, retract
 
 BYTES_PER_PARTICLE = 500  # of LIGGGHTS's restart, with its contact history (480 measured)
@@ -247,4 +247,4 @@ def write_results(run: SegmentedRun, segments: list[Segment]) -> None:
     with atomic_file(run.results / SERIES) as temporary:
         series[series["time_s"] <= end_s].to_csv(temporary, index=False)
     write_text(run.results / "dem.json", json.dumps(content, indent=1))
-    note_marks([run.results / SERIES, run.results / "dem.json"])
+    note_fingerprints([run.results / SERIES, run.results / "dem.json"])

@@ -19,7 +19,7 @@ from typing import Any
 
 from bedchain.errors import DataError, UserError
 from bedchain.files import path_inside, write_text
-from bedchain.marks import check_mark, mark_of
+from bedchain.fingerprints import check_fingerprint, fingerprint_of
 from bedchain.trajectory.dumps import read_dump
 from bedchain.trajectory.store import RECORD
 
@@ -82,7 +82,7 @@ class Segment:
     follows : str
         Hash of the state that it went on from; empty in a record of an earlier version.
     files : dict of str to dict
-        `bedchain.files.mark_of` each file by its path in the folder; empty in a record of an earlier version.
+        Fingerprint of each file by its path in the folder; empty in a record of an earlier version.
     """
 
     index: int
@@ -100,8 +100,8 @@ class Segment:
     def state(self) -> str:
         """Hash of the state that it ends in: restart and gas, neither frames nor series."""
         others = ("frame_", SERIES, f"gas/{SERIES}")
-        marks = {name: mark for name, mark in self.files.items() if not name.startswith(others)}
-        return hashlib.sha256(json.dumps(marks, sort_keys=True).encode()).hexdigest() if marks else ""
+        known = {name: value for name, value in self.files.items() if not name.startswith(others)}
+        return hashlib.sha256(json.dumps(known, sort_keys=True).encode()).hexdigest() if known else ""
 
 
 def input_stamp(files: list[Path], ranks: int, numbers: str = "") -> str:
@@ -168,9 +168,9 @@ def finished(folder: Path, start_step: int | None = None, follows: str = "") -> 
         raise DataError(f"{folder} begins at step {segment.start_step}, not where the one before it ends")
     if follows and segment.follows and segment.follows != follows:
         raise DataError(f"{folder} did not go on from the state before it")
-    for name, mark in segment.files.items():
-        check_mark(path_inside(folder, name), mark, with_hash=not name.startswith("frame_"))
-    return segment if segment.files else replace(segment, files=marks_in(folder))
+    for name, fingerprint in segment.files.items():
+        check_fingerprint(path_inside(folder, name), fingerprint, with_hash=not name.startswith("frame_"))
+    return segment if segment.files else replace(segment, files=fingerprints_in(folder))
 
 
 def _read_record(folder: Path) -> Segment:
@@ -181,7 +181,9 @@ def _read_record(folder: Path) -> Segment:
         segment = Segment(**json.loads(record.read_text(encoding="utf-8")))
         numbers = (segment.index, segment.start_step, segment.end_step)
         whole = segment.folder == folder.name and all(isinstance(number, int) for number in numbers)
-        whole = whole and all({"bytes", "blake2b"} == mark.keys() for mark in segment.files.values())
+        whole = whole and all(
+            {"bytes", "blake2b"} == fingerprint.keys() for fingerprint in segment.files.values()
+        )
     except (OSError, ValueError, TypeError, AttributeError) as error:
         raise DataError(f"{record} cannot be read ({error})") from error
     if not whole:
@@ -189,11 +191,11 @@ def _read_record(folder: Path) -> Segment:
     return segment
 
 
-def marks_in(folder: Path) -> dict[str, dict[str, Any]]:
+def fingerprints_in(folder: Path) -> dict[str, dict[str, Any]]:
     """Size and hash of all files in a segment's folder that a later step relies on, by name: not its logs."""
     files = sorted(file for file in folder.rglob("*") if file.is_file())
     return {
-        str(file.relative_to(folder)): mark_of(file)
+        str(file.relative_to(folder)): fingerprint_of(file)
         for file in files
         if file.suffix != ".log" and file.name != RECORD
     }
@@ -205,9 +207,9 @@ def write_record(folder: Path, segment: Segment) -> Segment:
     Returns
     -------
     Segment
-        With the marks of all its files.
+        With the fingerprints of all its files.
     """
-    segment = replace(segment, files=marks_in(folder))
+    segment = replace(segment, files=fingerprints_in(folder))
     write_text(folder / RECORD, json.dumps(asdict(segment), indent=1))
     return segment
 

@@ -28,7 +28,7 @@ from tqdm import tqdm
 from bedchain.array_files import map_npy
 from bedchain.errors import DataError, UserError, make_again
 from bedchain.files import atomic_file, path_inside, refuse_special_file, write_npy_header, write_text
-from bedchain.marks import check_mark
+from bedchain.fingerprints import check_fingerprint
 from bedchain.trajectory.dumps import frame_of, listed, read_dump
 
 LOG = logging.getLogger(__name__)
@@ -179,7 +179,7 @@ def _read_frame(
     entry, columns = manifest["frames"][index], manifest["columns"]
     try:
         if "blake2b" in entry:
-            check_mark(folder / entry["file"], {name: entry[name] for name in ("bytes", "blake2b")})
+            check_fingerprint(folder / entry["file"], {name: entry[name] for name in ("bytes", "blake2b")})
         dump = read_dump(folder / entry["file"], columns)
         if dump.step != entry["step"]:
             raise UserError(f"its step is {dump.step}, {entry['step']} expected")

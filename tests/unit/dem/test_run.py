@@ -10,7 +10,7 @@ import pytest
 from bedchain.dem import run as dem_run
 from bedchain.dem.parameter_files import write_parameters
 from bedchain.errors import UserError
-from bedchain.marks import mark_of, note_of
+from bedchain.fingerprints import fingerprint_of, note_of
 from bedchain.work_folders import work_folder
 from made.case_text import changed_case
 from made.solver_files import write_dump, write_restart
@@ -28,7 +28,7 @@ def test_a_run_settles_then_goes_on_segment_by_segment_and_does_nothing_twice(fo
     series = pd.read_csv(folder / "bed_series.csv")["time_s"]
     assert series.iloc[-1] == 1.0 and series.is_monotonic_increasing
     for name in ("bed_series.csv", "dem.json"):
-        assert json.loads(note_of(folder / name).read_text()) == mark_of(folder / name)
+        assert json.loads(note_of(folder / name).read_text()) == fingerprint_of(folder / name)
     dem_run.run_dem(folder, 1.0, 0.5, 1)
     assert len(times) == 3
     # a longer run goes on, a shorter one leaves out what is beyond

@@ -8,7 +8,7 @@ import pytest
 from bedchain.dem import segments
 from bedchain.dem.segments import Segment, SegmentedRun, finished
 from bedchain.errors import DataError, UserError
-from bedchain.marks import mark_of
+from bedchain.fingerprints import fingerprint_of
 from bedchain.trajectory.store import RECORD
 from made.solver_files import write_dump, write_gas, write_restart
 
@@ -75,7 +75,7 @@ def test_a_record_knows_each_file_but_the_logs(run):
     assert (first.end_step, second.end_step) == (400, 600)
     assert {"frame_0.bin", "particles.restart", "gas/0.008/U"} <= first.files.keys()
     assert not {"bedFoam.log", RECORD} & first.files.keys()
-    assert first.files["frame_0.bin"] == mark_of(run.state / "segment_0001" / "frame_0.bin")
+    assert first.files["frame_0.bin"] == fingerprint_of(run.state / "segment_0001" / "frame_0.bin")
     assert finished(run.state / "segment_0002", 400, first.state) == second
     assert finished(run.state / "segment_0003") is None
 
@@ -121,7 +121,7 @@ def test_a_record_that_is_none_is_refused(run, key, value):
         finished(record.parent)
 
 
-def test_a_record_of_an_earlier_version_has_no_marks_and_gets_them(run):
+def test_a_record_of_an_earlier_version_has_no_fingerprints_and_gets_them(run):
     record = run.state / "segment_0001" / RECORD
     old = json.loads(record.read_text())
     expected = old["files"]
@@ -154,13 +154,15 @@ def test_a_frame_that_is_not_complete_is_named(run, fault):
         segments.keep_own_frames(frame.parent, run, (0, 400), parameters)
 
 
-def test_the_manifest_lists_each_frame_once_with_its_owner_and_its_mark(run):
+def test_the_manifest_lists_each_frame_once_with_its_owner_and_its_fingerprint(run):
     manifest = segments.manifest(run, both(run))
     assert [frame["step"] for frame in manifest["frames"]] == [0, 100, 200, 300, 400, 500, 600]
     owners = [frame["file"].split("/")[-2] for frame in manifest["frames"]]
     assert owners == ["segment_0001"] * 5 + ["segment_0002"] * 2
     for frame in manifest["frames"]:
-        assert mark_of(run.results / frame["file"]) == {key: frame[key] for key in ("bytes", "blake2b")}
+        assert fingerprint_of(run.results / frame["file"]) == {
+            key: frame[key] for key in ("bytes", "blake2b")
+        }
     assert manifest["frame_interval_s"] == pytest.approx(2e-3) and manifest["number"] == 7
     assert manifest["segments"][1] == {
         "index": 2, "start_s": pytest.approx(8e-3), "end_s": pytest.approx(0.012),

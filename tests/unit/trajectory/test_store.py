@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 from bedchain.errors import UserError
-from bedchain.marks import mark_of
+from bedchain.fingerprints import fingerprint_of
 from bedchain.trajectory.store import RECORD, open_trajectory, read_manifest, write_trajectory
 from made.synthetic_bed import rolling_bed, write_run
 
@@ -92,7 +92,7 @@ def test_a_store_of_another_shape_is_refused(bed):
 def test_a_frame_with_other_bytes_has_its_segment_made_again(bed):
     _, dem = bed
     frame = dem.parent / json.loads(dem.read_text())["frames"][5]["file"]
-    changed(dem, lambda manifest: manifest["frames"][5].update(mark_of(frame)))
+    changed(dem, lambda manifest: manifest["frames"][5].update(fingerprint_of(frame)))
     (frame.parent / RECORD).write_text("{}")
     content = bytearray(frame.read_bytes())
     content[-1] ^= 1  # one bit of a velocity

@@ -6,16 +6,23 @@ import os
 import numpy as np
 import pytest
 
-from bedchain import marks
+from bedchain import fingerprints
 from bedchain.errors import DataError, UserError
-from bedchain.marks import check_mark, check_noted, mark_of, note_marks, note_of, unreadable
+from bedchain.fingerprints import (
+    check_fingerprint,
+    check_noted,
+    fingerprint_of,
+    note_fingerprints,
+    note_of,
+    unreadable,
+)
 
 
 @pytest.fixture
 def table(tmp_path):
     file = tmp_path / "metrics.csv"
     file.write_text("quantity,value\na,1\nb,2\n")
-    note_marks([file])
+    note_fingerprints([file])
     return file
 
 
@@ -43,7 +50,7 @@ def test_a_damaged_file_is_named_and_put_aside(table, content, wrong):
 def test_a_file_under_the_name_of_another_is_seen(tmp_path):
     for name in ("static", "dynamic"):
         np.savez(tmp_path / f"chain_{name}.npz", name=np.array(f"{name:8}"))
-    note_marks(tmp_path.glob("*.npz"))
+    note_fingerprints(tmp_path.glob("*.npz"))
     os.replace(tmp_path / "chain_dynamic.npz", tmp_path / "chain_static.npz")
     with pytest.raises(UserError, match="chain_static.npz was changed"):
         check_noted([tmp_path / "chain_static.npz"])
@@ -65,17 +72,17 @@ def test_a_note_that_is_damaged_itself_says_nothing(table, note):
 
 
 def test_a_large_file_is_known_by_blocks_of_it(tmp_path, monkeypatch):
-    monkeypatch.setattr(marks, "BLOCK_BYTES", 10)
+    monkeypatch.setattr(fingerprints, "BLOCK_BYTES", 10)
     file = tmp_path / "trajectory.npy"
     content = bytes(range(200)) * 2
     file.write_bytes(content)
-    mark = mark_of(file, 100)
-    check_mark(file, mark, most_bytes=100)
+    fingerprint = fingerprint_of(file, 100)
+    check_fingerprint(file, fingerprint, most_bytes=100)
     zeros = content[:100] + b"\0" * 100 + content[200:]
     for damaged in (b"\0" * 400, content[:-1] + b"x", b"x" + content[1:], zeros):
         file.write_bytes(damaged)
         with pytest.raises(DataError, match="trajectory.npy was changed"):
-            check_mark(file, mark, most_bytes=100)
+            check_fingerprint(file, fingerprint, most_bytes=100)
 
 
 def test_what_cannot_be_read_is_found_by_its_kind(tmp_path):

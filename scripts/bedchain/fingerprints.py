@@ -1,9 +1,9 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Marks of files, size and hash, by which a later step knows that a file is the one that its maker wrote.
+"""Fingerprints of files, their size and hash: by them a later step knows that a file is as it was made.
 
-The marks of a segment's files are in its record. Those of a stage's outputs are in notes beside them,
-``.marks/<name>.json``: a file that was cut off, changed or swapped for another is put aside by its next
-reader, so that the same command makes it again. A file without a note, such as a case file, is a user's own.
+The fingerprints of a segment's files are in its record. Those of a stage's outputs are in notes beside them,
+``.fingerprints/<name>.json``: a file that was cut off, changed or swapped for another is put aside by its
+next reader, so that the same command makes it again. A file without a note, such as a case file, is a user's.
 """
 
 import hashlib
@@ -23,12 +23,12 @@ HASH_BYTES = 16  # no two files of a run share so many by accident
 # A file of more than so many bytes is noted by blocks that are evenly spread over it, with its first and its
 # last: its readers take parts of it, and a whole hash in each stage would cost more than the stage.
 WHOLE_BYTES, BLOCK_BYTES = 1 << 24, 1 << 20
-NOTES = ".marks"
+NOTES = ".fingerprints"
 DAMAGED = ".damaged"
 NOTED = (".csv", ".json", ".npy", ".npz")  # what later stages read
 
 
-def mark_of(path: Path, most_bytes: int | None = None) -> dict[str, Any]:
+def fingerprint_of(path: Path, most_bytes: int | None = None) -> dict[str, Any]:
     """Size and hash of a file: ``bytes`` and ``blake2b``.
 
     Parameters
@@ -51,20 +51,20 @@ def mark_of(path: Path, most_bytes: int | None = None) -> dict[str, Any]:
     return {"bytes": size, "blake2b": digest.hexdigest()}
 
 
-def check_mark(
-    path: Path, mark: Mapping[str, Any], with_hash: bool = True, most_bytes: int | None = None
+def check_fingerprint(
+    path: Path, fingerprint: Mapping[str, Any], with_hash: bool = True, most_bytes: int | None = None
 ) -> None:
     """Refuse a file that is not the one that its maker wrote.
 
     Parameters
     ----------
     path : Path
-    mark : mapping
-        Of `mark_of`, as the maker noted it.
+    fingerprint : mapping
+        Of `fingerprint_of`, as the maker noted it.
     with_hash : bool, optional
         Compare the content too, not only the size: about a second for each gigabyte.
     most_bytes : int, optional
-        Of `mark_of`.
+        Of `fingerprint_of`.
 
     Raises
     ------
@@ -73,23 +73,23 @@ def check_mark(
     """
     try:
         size = path.stat().st_size
-        if size < mark["bytes"]:
-            raise DataError(f"{path} is cut off: {size} of {mark['bytes']} bytes are there")
-        if size > mark["bytes"] or (with_hash and mark_of(path, most_bytes) != mark):
+        if size < fingerprint["bytes"]:
+            raise DataError(f"{path} is cut off: {size} of {fingerprint['bytes']} bytes are there")
+        if size > fingerprint["bytes"] or (with_hash and fingerprint_of(path, most_bytes) != fingerprint):
             raise DataError(f"{path} was changed after it was written: its bytes are others")
     except OSError as error:
         raise DataError(f"{path} cannot be read ({error.strerror})") from error
 
 
-def note_marks(files: Iterable[Path]) -> None:
-    """Note the marks of finished files beside them; of kinds that no later stage reads none is taken."""
+def note_fingerprints(files: Iterable[Path]) -> None:
+    """Note the fingerprints of finished files beside them; none of kinds that no later stage reads."""
     for file in files:
         if file.suffix in NOTED and file.exists():
-            write_text(note_of(file), json.dumps(mark_of(file, WHOLE_BYTES)))
+            write_text(note_of(file), json.dumps(fingerprint_of(file, WHOLE_BYTES)))
 
 
 def note_of(file: Path) -> Path:
-    """The note with a file's mark."""
+    """The note with a file's fingerprint."""
     return file.parent / NOTES / f"{file.name}.json"
 
 
@@ -103,13 +103,13 @@ def check_noted(files: Iterable[Path]) -> None:
     """
     for file in files:
         try:
-            mark = json.loads(note_of(file).read_text(encoding="utf-8"))
-            known = isinstance(mark, dict) and mark.keys() == {"bytes", "blake2b"}
+            fingerprint = json.loads(note_of(file).read_text(encoding="utf-8"))
+            known = isinstance(fingerprint, dict) and fingerprint.keys() == {"bytes", "blake2b"}
         except (OSError, ValueError):  # no note, or one that is damaged itself
             continue
         if known:
             try:
-                check_mark(file, mark, most_bytes=WHOLE_BYTES)
+                check_fingerprint(file, fingerprint, most_bytes=WHOLE_BYTES)
             except DataError as error:
                 raise UserError(f"{error}; {put_aside(file)}") from error
 
