@@ -17,9 +17,22 @@ from made.forms import COLUMNS, STEP_S, moving, write_form
 from made.mutations import mutated
 
 TIMES = int(os.environ.get("BEDCHAIN_FUZZ", "10_000"))  # of each form; 100 000 take an hour and more [1]
-# without vtp and vtu: VTK itself ends the process over some damaged ones where memory is limited
-SERIES = moving(n_frames=3, n_particles=12)
-FORMS = ("text", "many_text", "binary", "lammps", "vtk", "vtk_binary", "table", "npz", "gz")
+SERIES = moving(n_frames=2, n_particles=4)  # small files: a damage takes about 1 ms
+FORMS = (
+    "text",
+    "many_text",
+    "binary",
+    "lammps",
+    "vtk",
+    "vtk_binary",
+    "table",
+    "npz",
+    "gz",
+    "vtk_5_ascii",
+    "vtk_5_binary",
+    "vtp",
+    "vtu",
+)
 PLACE = Placement("x", "z", (0.0, 0.0, 0.0), 1.0, 1.0, outside="exit", without_ids="order")
 
 

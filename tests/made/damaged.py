@@ -83,7 +83,7 @@ class Target:
     change: Change = mutated
 
 
-def try_damaged(target: Target, name: str, times: int, folder: Path) -> None:
+def try_damaged(target: Target, name: str, times: int, folder: Path, first: int = 0) -> None:
     """Read a target so many times, each with other damage; the first that is neither read nor refused fails.
 
     Parameters
@@ -94,13 +94,15 @@ def try_damaged(target: Target, name: str, times: int, folder: Path) -> None:
     times : int
     folder : Path
         Gets the file.
+    first : int
+        Number of the first damage, so that a stopped run can go on.
     """
     file = folder / target.file
     target.make(file)
     content = file.read_bytes()
     target.read(file)
     with limited_memory():
-        for number in range(times):
+        for number in range(first, first + times):
             file.write_bytes(target.change(content, Random(f"{name} {number}")))
             try:
                 with limited_time():

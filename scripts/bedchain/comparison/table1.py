@@ -59,7 +59,7 @@ def table_of_values(values: dict[str, Any], schema: Schema, with_paper: bool) ->
     parts, rows = schema_keys(schema), []
     for row in ROWS:
         if not {*row.keys} <= {*values} or (
-            row.keys == ("bed.thickness_m",) and values["bed.layers"] == "one"
+            row.keys == ("bed.thickness_m",) and values.get("bed.layers") == "one"
         ):
             continue
         papers = [parts[key].get("x-paper") for key in row.keys]

@@ -37,6 +37,14 @@ def test_other_beds_have_what_they_use_and_nothing_of_the_paper(case, there, abs
     assert there <= {*rows.index} and not absent & {*rows.index}
 
 
+def test_a_bed_of_frames_has_a_depth_and_no_layers():
+    values = table_values(load_case(ROOT / "cases" / "short" / "case.yaml"))
+    rows = table_of_values(
+        {key: value for key, value in values.items() if key != "bed.layers"}, load_schema(), False
+    )
+    assert "bed, depth between the walls" in {*rows["parameter"]}
+
+
 def test_every_key_is_in_the_schema():
     known = table("short").shape and load_schema()["properties"]
     for row in ROWS:

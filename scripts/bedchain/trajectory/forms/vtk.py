@@ -1,18 +1,17 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Frames in VTK's files, one a file: legacy (.vtk), VTP, VTU, and PVD collections, by pyvista."""
+"""Frames in VTK's files, one a file: legacy (.vtk), VTP, VTU, and PVD collections."""
 
 import re
-import warnings
 import xml.etree.ElementTree as ElementTree
 from collections.abc import Iterator, Mapping
 from functools import partial
 from pathlib import Path
-from typing import Any, NamedTuple
+from typing import NamedTuple
 
 import numpy as np
 
 from bedchain.errors import DataError
-from bedchain.trajectory.forms import legacy_vtk
+from bedchain.trajectory.forms import legacy_vtk, vtk_process
 from bedchain.trajectory.forms.raw import PARTICLE, Columns, RawFrame, our_columns
 
 HEAD_BYTES = 4096
@@ -105,38 +104,19 @@ def _values(path: Path, renamed: Mapping[str, str]) -> Columns:
     content = path.read_bytes()
     if legacy_vtk.is_early(content):
         of_file = legacy_vtk.read_values(content)
-        values = _named(of_file.points, of_file.fields, {})
-        places, arrays = our_columns(list(values), renamed), list(values.values())
-        return {name: arrays[places[name]] for name in PARTICLE if name in places}
-    _check_counts(content)
-    import pyvista  # slow to import
-    from vtkmodules.vtkCommonCore import vtkLogger
-
-    vtkLogger.SetStderrVerbosity(vtkLogger.VERBOSITY_OFF)  # its errors are raised, and one file can have many
-    try:
-        with warnings.catch_warnings(), pyvista.VtkErrorCatcher(raise_errors=True, send_to_logging=False):
-            warnings.simplefilter("ignore")  # what VTK warns of, it also raises
-            mesh = pyvista.read(path)
-        if not isinstance(mesh, pyvista.PointSet | pyvista.PolyData | pyvista.UnstructuredGrid):
-            raise DataError(f"a data set of the kind {type(mesh).__name__} holds no particles")
-        values = _named(np.asarray(mesh.points), mesh.point_data, mesh.cell_data)
-    except DataError:
-        raise
-    except Exception as error:
-        raise DataError(f"VTK cannot read it ({' '.join(str(error).split())[:200]})") from error
-    places = our_columns(list(values), renamed)
-    arrays = list(values.values())
+    else:
+        _check_counts(content)
+        of_file = vtk_process.read_values(path)
+    values = _named(of_file)
+    places, arrays = our_columns(list(values), renamed), list(values.values())
     return {name: arrays[places[name]] for name in PARTICLE if name in places}
 
 
-def _named(points: np.ndarray, point_data: Any, cell_data: Any) -> Columns:
+def _named(of_file: legacy_vtk.Values) -> Columns:
     """Columns by names: those of the points, then arrays with their component's number behind the name."""
+    points = of_file.points
     values = {f"points{axis}": points[:, axis] for axis in range(3)}
-    data = dict(cell_data) if not len(point_data) else dict(point_data)
-    for name, array in data.items():
-        array = np.asarray(array)
-        if array.shape[:1] != points.shape[:1] or array.dtype.kind not in "iufb":
-            continue
+    for name, array in of_file.fields.items():
         columns = array.reshape(len(array), -1).T if array.size else array.reshape(0, 1).T
         values |= (
             {name: columns[0]} if len(columns) == 1 else {f"{name}{at}": c for at, c in enumerate(columns)}
