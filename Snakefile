@@ -74,6 +74,7 @@ PLOTS = [
     "fig5a_radial",
     "fig5b_axial",
     *(["snapshot"] if GAS else []),
+    *(["fig_bubbles"] if GAS and not FRAMES else []),
     *(["fig_difference"] if {*MODEL_FIGURES} <= {*MODELS} else []),
     "fig_chapman_kolmogorov",
     "fig_timescales",

@@ -4,7 +4,8 @@ from bedchain.dem.repeats import repeat_ranks
 from bedchain.workflow import frame_files, solver_values
 
 DRUM = "liggghts_inputs/drum"
-AUDITED = ["bed", "particles", "contact", "gas", "drum"]
+SCENE = ["bed", "particles", "contact", "gas", "drum"]
+AUDITED = [*SCENE, "mixing"]
 
 
 rule build_solver:

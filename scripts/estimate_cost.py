@@ -8,12 +8,15 @@ from pathlib import Path
 import pandas as pd
 
 from bedchain.case.presets import read_presets
+from bedchain.case.scene import scene_of
 from bedchain.case.schema import Case
 from bedchain.files import write_csv, write_text
 from bedchain.stage import LOG, run_stage
 from bedchain.studies.cost.actual import FACTOR_AIM, actual_cost, beside_actual, far_from_estimate
 from bedchain.studies.cost.estimate import predicted
 from bedchain.studies.cost.machine_speed import bed_of, calibrate
+from bedchain.studies.expectation import expected_of
+from bedchain.studies.expectation import lines as expected_lines
 
 UNITS = {"wall_s": "s", "memory_mb": "MB", "disk_mb": "MB on disk", "error_floors": "noise floors"}
 SHOWN = {
@@ -55,7 +58,7 @@ def estimate_cost(
     expected = predicted(case, speed, read_presets(presets).values(), archived)
     found = beside_actual(expected, actual_cost(case, results, table.parent, folders))
     write_csv(found.reset_index(), table)
-    write_text(text, "\n".join([*header(case, speed.source, archived), lines(found), ""]))
+    write_text(text, "\n".join([*header(case, speed.source, archived), lines(found), *of_the_bed(case), ""]))
     for name in far_from_estimate(found):
         LOG.info(
             "%s came out %.2f times as long as estimated, more than %g",
@@ -75,6 +78,11 @@ def header(case: Case, source: str, archived: bool) -> list[str]:
             f"other programs keep {busy:.1f} of {os.cpu_count()} cores busy now: it would take longer"
         )
     return found
+
+
+def of_the_bed(case: Case) -> list[str]:
+    """What to expect of the bed itself, by the two-phase model."""
+    return expected_lines(expected_of(scene_of(case), case["mixing"]["split_z_m"]))
 
 
 def lines(table: pd.DataFrame) -> str:

@@ -98,6 +98,16 @@ FIGURE_RULES = {
             "row_m": settled(CASE, lambda case: case["bed"]["height_m"] / case["cells"]["rows"]),
         },
     },
+    "plot_bubbles": {
+        "name": "fig_bubbles",
+        "input": TRAJECTORY,
+        "output": {"bubbles": f"{RESULTS}/bubbles.csv"},
+        "params": {
+            "case": {section: CASE[section] for section in SCENE if section in CASE},
+            "start_s": CASE["learning"]["start_s"],
+            "end_s": CASE["comparison"]["end_s"],
+        },
+    },
     "plot_discussion": {
         "name": "fig_discussion",
         "input": {**SETTLED, "discussion": f"{RESULTS}/discussion.csv"},

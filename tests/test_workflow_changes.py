@@ -10,7 +10,7 @@ import pytest
 from made.workflow import ALL, BED, STABLE, finished_copy, modules_behind, plan, snakemake
 
 AUDIT = {"audit_scene"}  # reads neither time nor cells
-WHOLE_BED = {"plot_snapshot"}  # needs particles and gas, no cells
+WHOLE_BED = {"plot_snapshot", "plot_bubbles"}  # need particles and gas, no cells
 CHOICE = {"choose_chain", "plot_choice"}  # reads the learning window and the lines between groups alone
 
 

@@ -35,7 +35,7 @@ CHAINS = {
 FIGURES = {
     *("plot_cells", "plot_cost", "plot_distribution", "plot_mixing", "plot_snapshot", "plot_difference"),
     *("plot_chapman_kolmogorov", "plot_timescales", "plot_stationarity", "plot_discussion", "make_film"),
-    *("plot_choice", "plot_modes"),
+    *("plot_choice", "plot_modes", "plot_bubbles"),
 }
 TABLES = {"write_table", "write_provenance", "discuss_errors", "write_report"}
 ALL = {"audit_scene"} | BED | CHAINS | FIGURES | TABLES

@@ -6,6 +6,7 @@ import numpy as np
 import pandas as pd
 import pytest
 
+from bedchain.case.load import load_case
 from bedchain.errors import UserError
 from bedchain.figures.style import FigureFiles
 from bedchain.measures.voidage import Slab
@@ -13,6 +14,7 @@ from bedchain.trajectory.frames import Window
 from bedchain.trajectory.store import BedFiles
 from compare_mixing import SolverSeries, Tables, compare_mixing
 from discuss_errors import CaseChains, Scanned, discuss_errors
+from made import ROOT
 from made.small_bed import (
     BATCH,
     COLUMNS,
@@ -31,6 +33,7 @@ from made.synthetic_bed import rolling_bed, write_run
 from make_film import Halves, make_film
 from measure_mixing import measure_mixing
 from parse_dumps import parse_dumps
+from plot_bubbles import plot_bubbles
 from plot_discussion import plot_discussion
 from plot_mixing import plot_mixing
 from plot_stationarity import plot_stationarity
@@ -155,6 +158,21 @@ def test_rolls_are_steady(bed, tmp_path):
     assert (table.loc["voidage", "height_m"] < 0.13).all()
     files = forms(tmp_path, "fig")
     assert all(file.stat().st_size > 1000 for file in (files.png, files.pdf, files.csv))
+
+
+def test_bubbles_of_rolls_and_of_the_model(bed, tmp_path):
+    case = load_case(ROOT / "cases" / "short" / "case.yaml")
+    window = Window(LEARN.start_s, COMPARE.end_s)
+    plot_bubbles(bed.files, forms(tmp_path, "fig"), window, case, tmp_path / "bubbles.csv")
+    files = forms(tmp_path, "fig")
+    assert all(file.stat().st_size > 1000 for file in (files.png, files.pdf, files.csv))
+    table = pd.read_csv(files.csv)
+    voidage = table[(table["quantity"] == "voidage") & (table["source"] == "dem")]
+    assert voidage["value"].between(0, 1).all()
+    assert set(table["source"]) == {"dem", "two_phase"}
+    case["gas"]["superficial_velocity_m_s"] = 0.4
+    plot_bubbles(bed.files, forms(tmp_path, "fixed"), window, case, tmp_path / "bubbles.csv")
+    assert set(pd.read_csv(forms(tmp_path, "fixed").csv)["source"]) == {"dem"}
 
 
 def test_film_shows_every_step_and_moves(bed, tmp_path):

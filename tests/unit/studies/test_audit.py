@@ -134,7 +134,11 @@ def test_the_table_and_the_log_of_the_stage(paper, tmp_path, caplog):
     assert list(rows.columns) == [
         *("physics", "number", "symbol", "value", "threshold", "source", "decision", "built", "agrees"),
     ]
-    assert len(caplog.messages) == len(rows)
+    judged, expected = rows[rows["decision"] != "expect"], rows[rows["decision"] == "expect"]
+    assert (expected["physics"] == "expected of the bed: slow bubbles").all()
+    heights = expected.set_index("number")["value"]
+    assert heights["mean particle height [m]"] == pytest.approx(0.196, rel=3e-3)
+    assert len(caplog.messages) == len(judged) + len(expected) + 1
     assert "keep gas flow: drag over weight, forced or own 2.92, threshold 0.1" in caplog.messages
 
 

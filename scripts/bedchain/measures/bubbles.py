@@ -1,0 +1,166 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Bubbles of a simulated bed: their size, rise velocity and number by height, from the voidage of frames.
+
+A bubble is a connected region (over sides of cells) of more than `void` voidage that does not reach the top
+of the bed's box, and so is not the freeboard. Its diameter is that of a circle of its area.
+"""
+
+from collections.abc import Iterable
+
+import numpy as np
+import pandas as pd
+from numpy.typing import NDArray
+from scipy import ndimage
+from scipy.spatial import cKDTree
+
+SMALLEST_CELLS = 4  # smaller regions are gaps between particles
+LARGEST_GROWTH = 2.0  # of a bubble's area from a frame to the next: beyond, it merged, split or is another
+LARGEST_SIDESTEP = 0.5  # of a bubble over its rise and its radius together
+SMALLEST_SAMPLE = 5  # bubbles in a row that a mean is given for
+COLUMNS = ["frame", "x_m", "z_m", "diameter_m"]
+
+
+def voidage_map(
+    x_m: NDArray, z_m: NDArray, shape: tuple[int, int], size_m: tuple[float, float], solids_m: float
+) -> NDArray[np.float64]:
+    """Voidage of square cells in a frame.
+
+    Parameters
+    ----------
+    x_m, z_m : (n_particles,) array
+        [m].
+    shape : (int, int)
+        Rows and columns of cells.
+    size_m : (float, float)
+        Height and width of the bed [m].
+    solids_m : float
+        Volume of a particle over the depth of the bed [m2].
+
+    Returns
+    -------
+    (rows, columns) ndarray
+        [1].
+    """
+    rows, columns = shape
+    row = np.clip((z_m * (rows / size_m[0])).astype(np.int64), 0, rows - 1)
+    column = np.clip((x_m * (columns / size_m[1])).astype(np.int64), 0, columns - 1)
+    held = np.bincount(row * columns + column, minlength=rows * columns).reshape(shape)
+    return np.asarray(1 - held * (solids_m * rows * columns / (size_m[0] * size_m[1])), dtype=float)
+
+
+def bubbles_of(voidage: NDArray[np.float64], cell_m: float, void: float) -> NDArray[np.float64]:
+    """Bubbles of one frame.
+
+    Parameters
+    ----------
+    voidage : (rows, columns) array
+        Row 0 at the bottom [1].
+    cell_m : float
+        Edge of a cell [m].
+    void : float
+        Voidage from which on a cell belongs to a bubble [1].
+
+    Returns
+    -------
+    (n_bubbles, 3) ndarray
+        x, z of the centre of area, and diameter [m].
+    """
+    labels, count = ndimage.label(voidage > void)
+    area = np.bincount(labels.ravel(), minlength=count + 1)
+    area[np.unique(labels[-1])] = 0  # the freeboard
+    area[0] = 0
+    which = np.flatnonzero(area >= SMALLEST_CELLS)
+    if not len(which):
+        return np.empty((0, 3))
+    centres = np.array(ndimage.center_of_mass(labels > 0, labels, which)) + 0.5
+    diameter = np.sqrt(4 * area[which] / np.pi)
+    return cell_m * np.column_stack([centres[:, 1], centres[:, 0], diameter])
+
+
+def bubble_table(maps: Iterable[NDArray[np.float64]], cell_m: float, void: float) -> pd.DataFrame:
+    """Bubbles of all frames, each row with its frame: frame, x_m, z_m, diameter_m; see `bubbles_of`."""
+    parts = [np.insert(bubbles_of(voidage, cell_m, void), 0, at, axis=1) for at, voidage in enumerate(maps)]
+    return pd.DataFrame(np.concatenate(parts) if parts else np.empty((0, 4)), columns=COLUMNS)
+
+
+def rises(table: pd.DataFrame, interval_s: float, fastest_m_s: float) -> pd.DataFrame:
+    """Bubbles that are in two frames, the second time higher.
+
+    A bubble and one of the next frame are the same where each is the nearest to the other at the place that
+    the first would have reached at half of `fastest_m_s`, and neither size nor place jumps.
+
+    Parameters
+    ----------
+    table : DataFrame
+        Of `bubble_table`.
+    interval_s : float
+        Time between frames [s].
+    fastest_m_s : float
+        No bubble rises faster [m/s].
+
+    Returns
+    -------
+    DataFrame
+        frame, z_m (of the middle), from_m, to_m, diameter_m (mean), velocity_m_s.
+    """
+    frames = dict(tuple(table.groupby("frame")[COLUMNS[1:]]))
+    pairs = [
+        _same(at, before.to_numpy(), frames[at + 1].to_numpy(), interval_s, fastest_m_s)
+        for at, before in frames.items()
+        if at + 1 in frames
+    ]
+    columns = ["frame", "z_m", "from_m", "to_m", "diameter_m", "velocity_m_s"]
+    return pd.DataFrame(np.concatenate(pairs) if pairs else np.empty((0, 6)), columns=columns)
+
+
+def _same(
+    frame: float, before: NDArray, after: NDArray, interval_s: float, fastest_m_s: float
+) -> NDArray[np.float64]:
+    """Rows of `rises` between two frames of (n, 3) bubbles."""
+    step = fastest_m_s * interval_s
+    guess = before[:, :2] + [0, step / 2]
+    _, forward = cKDTree(after[:, :2]).query(guess)
+    _, backward = cKDTree(guess).query(after[:, :2])
+    mutual = backward[forward] == np.arange(len(before))
+    start, end = before[mutual], after[forward[mutual]]
+    rise, growth = end[:, 1] - start[:, 1], (end[:, 2] / start[:, 2]) ** 2
+    aside = np.abs(end[:, 0] - start[:, 0])
+    kept = (rise > 0) & (rise < step) & (growth < LARGEST_GROWTH) & (growth > 1 / LARGEST_GROWTH)
+    kept &= aside < LARGEST_SIDESTEP * (rise + start[:, 2] / 2)
+    start, end, rise = start[kept], end[kept], rise[kept]
+    middle, size = (start[:, 1] + end[:, 1]) / 2, (start[:, 2] + end[:, 2]) / 2
+    return np.column_stack(
+        [np.full(len(rise), frame), middle, start[:, 1], end[:, 1], size, rise / interval_s]
+    )
+
+
+def by_height(
+    table: pd.DataFrame, risen: pd.DataFrame, edges_m: NDArray[np.float64], duration_s: float
+) -> pd.DataFrame:
+    """Means over bubbles by height.
+
+    Parameters
+    ----------
+    table, risen : DataFrame
+        Of `bubble_table` and `rises`.
+    edges_m : (n_rows + 1,) array
+        Of the rows [m].
+    duration_s : float
+        Time that was looked at [s].
+
+    Returns
+    -------
+    DataFrame
+        height_m, bubbles_1, diameter_m, velocity_m_s, and frequency_Hz: bubbles seen to pass the middle of a
+        row; NaN in rows with fewer than five bubbles.
+    """
+    middles = (edges_m[1:] + edges_m[:-1]) / 2
+    passed = (risen["from_m"].to_numpy() < middles[:, None]) & (risen["to_m"].to_numpy() >= middles[:, None])
+    means = {
+        name: data.groupby(pd.cut(data["z_m"], edges_m), observed=False)[name].agg(["mean", "count"])
+        for data, name in ((table, "diameter_m"), (risen, "velocity_m_s"))
+    }
+    rows = {"height_m": middles, "bubbles_1": means["diameter_m"]["count"].to_numpy()}
+    for name, values in means.items():
+        rows[name] = values["mean"].where(values["count"] >= SMALLEST_SAMPLE).to_numpy()
+    return pd.DataFrame(rows | {"frequency_Hz": passed.sum(axis=1) / duration_s})
