@@ -31,8 +31,9 @@ QUANTITIES = {
 }
 STYLES = {"dem": ("DEM", "#222222", "-"), "two_phase": ("two-phase model", "#ee6677", "--")}
 NOTE = """Bubble: connected cells of the gas grid with a voidage above {void:g} that do not reach the
-freeboard; diameter of a circle of its area, mean over bubbles. Rise velocity and number a second over the width:
-of bubbles known again in the next frame ({share:.0f} % of them), so that the number is a lower bound. {model}"""
+freeboard; diameter of a circle of its area, mean over bubbles. Rise velocity and number a second over the
+width: of bubbles known again in the next frame ({share:.0f} % of them), so that the number is a lower bound.
+{model}"""
 
 
 def plot_bubbles(
