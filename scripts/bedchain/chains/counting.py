@@ -7,7 +7,7 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy import sparse
 
-from bedchain.chains import hash_counts
+from bedchain.chains import hash_counts, sorted_counts
 from bedchain.errors import DataError
 from bedchain.trajectory.chunks import chunks
 
@@ -98,8 +98,10 @@ def count_moves(
         before, after = _set_apart(parts, n_cells)
         table = hash_counts.tally_moves(before, after, chunk_weights, occupied, table)
     keys, values = hash_counts.table_entries(table)
-    keys, inside = _inside(keys, n_cells)
-    moves, shares = _csr(keys, values[inside], n_cells, n_cells)
+    rows, columns = np.divmod(keys, n_states)
+    inside = (rows < n_cells) & (columns < n_cells)
+    begins = np.concatenate(([0], np.cumsum(np.bincount(rows[inside], minlength=n_cells))))
+    moves, shares = _csr(begins, columns[inside], values[inside], n_cells)
     lost, inserted = gone if gone.any() else (None, None)
     return Counts(moves, shares, occupied[:n_cells], int(weights.sum()), lag, lost=lost, inserted=inserted)
 
@@ -127,28 +129,22 @@ def count_pairs(
         As `count_moves`.
     """
     starts, weights = step_starts(cells, lag, 2, first, last, step_weights)
-    pairs, table = hash_counts.empty_table(np.int64, 1), hash_counts.empty_table()
-    occupied, n_states = np.zeros(0, np.int64), n_cells + 1
+    bits, entries = sorted_counts.cell_bits(n_cells + 1), sorted_counts.NO_ENTRIES
     for parts, chunk_weights in chunks(cells, n_cells, starts, weights, (0, lag, 2 * lag)):
-        before, now, after = _set_apart(parts, n_cells)
-        pairs, occupied, table = hash_counts.tally_pairs(
-            before, now, after, chunk_weights, n_states, pairs, occupied, table
-        )
-    pair_keys, numbers = hash_counts.table_entries(pairs)
-    pair_keys, inside = _inside(pair_keys, n_cells)
-    rank = np.full(numbers.size, -1, np.int64)
-    numbers = numbers[inside]
-    rank[numbers[:, 0]] = np.arange(len(numbers))
-    keys, values = hash_counts.table_entries(table)
-    del table
-    rows, columns = rank[keys // n_states], keys % n_states
-    if not inside.all():
-        values, rows, columns = values[rows >= 0], rows[rows >= 0], columns[rows >= 0]
-    keys = rows * n_cells + columns
-    order = np.argsort(keys)
-    moves, shares = _csr(keys[order], values[order], pair_keys.size, n_cells)
-    cell_pairs = np.column_stack(np.divmod(pair_keys, n_cells))
-    return Counts(moves, shares, occupied[numbers[:, 0]], int(weights.sum()), lag, cell_pairs)
+        counted = sorted_counts.counted_paths(_set_apart(parts, n_cells), chunk_weights, bits)
+        entries = sorted_counts.merged(entries, counted)
+    keys, values = entries
+    field = (1 << bits) - 1
+    seen = keys & field < n_cells  # a particle that is not there is so in all three cells
+    keys, values = (keys, values) if seen.all() else (keys[seen], values[seen])
+    begins = np.flatnonzero(np.diff(keys >> bits, prepend=-1))
+    pairs = np.column_stack((keys[begins] >> 2 * bits, keys[begins] >> bits & field))
+    occupied = (
+        np.add.reduceat(values[:, 2], begins).astype(np.int64) if begins.size else np.zeros(0, np.int64)
+    )
+    rows = np.append(begins, keys.size)
+    moves, shares = _csr(rows, keys & field, values, n_cells)
+    return Counts(moves, shares, occupied, int(weights.sum()), lag, pairs)
 
 
 def lost_and_inserted(
@@ -180,13 +176,6 @@ def _set_apart(parts: list[NDArray[np.int32]], n_cells: int) -> list[NDArray[np.
         return parts
     unseen = np.logical_or.reduce([part < 0 for part in parts])
     return [np.where(unseen, np.int32(n_cells), part) for part in parts]
-
-
-def _inside(keys: NDArray[np.int64], n_cells: int) -> tuple[NDArray[np.int64], NDArray[np.bool_]]:
-    """Keys ``i * n_cells + j`` of keys with a state more, of those between cells, and which these are."""
-    rows, columns = np.divmod(keys, n_cells + 1)
-    inside = (rows < n_cells) & (columns < n_cells)
-    return (rows * n_cells + columns)[inside], inside
 
 
 def step_starts(
@@ -237,13 +226,10 @@ def step_starts(
 
 
 def _csr(
-    keys: NDArray[np.int64], values: NDArray[np.float64], n_from: int, n_cells: int
+    begins: NDArray[np.int64], columns: NDArray[np.int64], values: NDArray[np.float64], n_cells: int
 ) -> tuple[sparse.csr_array, sparse.csr_array]:
-    """Counts and shares as sparse matrices, from rising keys ``row * n_cells + column``."""
-    rows, columns = np.divmod(keys, n_cells)
-    indptr = np.zeros(n_from + 1, np.int64)
-    np.cumsum(np.bincount(rows, minlength=n_from), out=indptr[1:])
-    index = (columns.astype(np.int32), indptr.astype(np.int32))
-    shape = (n_from, n_cells)
+    """Counts and shares as sparse matrices; ``begins`` has the first entry of each row, and the end."""
+    index = (columns.astype(np.int32), begins.astype(np.int32))
+    shape = (begins.size - 1, n_cells)
     moves = sparse.csr_array((values[:, 0].astype(np.int64), *index), shape=shape)
     return moves, sparse.csr_array((values[:, 1].copy(), *index), shape=shape)

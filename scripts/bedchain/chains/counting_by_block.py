@@ -10,6 +10,7 @@ from numpy.typing import NDArray
 from scipy import sparse
 
 from bedchain.chains.counting import Counts, count_moves, count_pairs
+from bedchain.chains.sorted_counts import distinct
 from bedchain.uncertainty.bands import block_edges
 
 
@@ -96,7 +97,7 @@ def count_pair_blocks(cells: NDArray[np.int32], n_cells: int, lag: int = 1) -> B
     edges = block_edges(len(cells) - 2 * lag)
     parts = _by_block(lambda first, last: count_pairs(cells, n_cells, lag, first=first, last=last), edges)
     pair_keys = [part.pairs @ np.array([n_cells, 1]) for part in parts if part.pairs is not None]
-    pairs = np.unique(np.concatenate(pair_keys))
+    pairs = distinct(np.concatenate(pair_keys))
     places = [np.searchsorted(pairs, keys) for keys in pair_keys]
     occupied = np.zeros((len(parts), pairs.size), np.int64)
     for row, place, part in zip(occupied, places, parts, strict=True):
@@ -117,7 +118,7 @@ def _joined(
     n_cells: int,
     pairs: NDArray[np.int64] | None,
 ) -> BlockCounts:
-    entries = np.unique(np.concatenate(keys))
+    entries = distinct(np.concatenate(keys))
     moves, shares = np.zeros((len(parts), entries.size), np.int64), np.zeros((len(parts), entries.size))
     for row, (part, key) in enumerate(zip(parts, keys, strict=True)):
         place = np.searchsorted(entries, key)

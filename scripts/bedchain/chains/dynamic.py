@@ -9,6 +9,7 @@ in the static chain. A move into a pair from which no move was counted leads to 
 from collections.abc import Callable
 
 import numpy as np
+from numba import njit
 from numpy.typing import NDArray
 from scipy import sparse
 
@@ -115,23 +116,33 @@ def _on_states(
 
     An entry falls back on the state of cell k where the pair (present, k) is no state.
     """
+    columns, fell_back = np.empty(both.nnz, np.int32), np.empty(both.nnz, bool)
+    begins = np.searchsorted(keys, np.arange(n_cells + 1) * n_cells)
+    _find_states(both.indptr, both.indices, cell_of_state, keys, begins, columns, fell_back)
     lengths = np.diff(both.indptr)
-    columns = np.empty(both.nnz, np.int32)
-    fell_back = np.empty(both.nnz, bool)
-    # In blocks of rows: the int64 keys of all entries together would be the largest array.
-    for low in range(0, both.shape[0], 65536):
-        high = min(low + 65536, both.shape[0])
-        part = slice(int(both.indptr[low]), int(both.indptr[high]))
-        pair = np.repeat(cell_of_state[low:high].astype(np.int64), lengths[low:high]) * n_cells
-        pair += both.indices[part]
-        place = np.minimum(np.searchsorted(keys, pair), keys.size - 1)
-        known = keys[place] == pair
-        columns[part] = np.where(known, place, keys.size + both.indices[part])
-        fell_back[part] = ~known
     data = both.data / np.repeat(np.asarray(both.sum(axis=1)).ravel(), lengths)
     shape = (both.shape[0], both.shape[0])
     matrix = sparse.csr_array((data, columns, both.indptr.astype(np.int32)), shape=shape)
     return matrix, fell_back
+
+
+@njit(cache=True)
+def _find_states(indptr, indices, cell_of_state, keys, begins, columns, fell_back):  # type: ignore[no-untyped-def]
+    """State of each entry, and whether it falls back; ``begins`` are the first pairs from each cell."""
+    n_cells = begins.size - 1
+    for row in range(cell_of_state.size):
+        cell = cell_of_state[row]
+        for entry in range(indptr[row], indptr[row + 1]):
+            pair = np.int64(cell) * n_cells + indices[entry]
+            low, high = begins[cell], begins[cell + 1]
+            while low < high:
+                middle = (low + high) >> 1
+                if keys[middle] < pair:
+                    low = middle + 1
+                else:
+                    high = middle
+            fell_back[entry] = low == begins[cell + 1] or keys[low] != pair
+            columns[entry] = keys.size + indices[entry] if fell_back[entry] else low
 
 
 def _open_pairs(

@@ -114,70 +114,10 @@ def tally_moves(before, after, weights, occupied, table):  # type: ignore[no-unt
     return table
 
 
-@njit(cache=True)
-def _number_pairs(first, second, n_cells, pairs, pair_of):  # type: ignore[no-untyped-def]
-    """Set the number of each particle's pair, in order of appearance; new pairs are added."""
-    keys, numbers, bits, used = pairs
-    for particle in range(first.size):
-        key = np.int64(first[particle]) * n_cells + np.int64(second[particle])
-        slot = find_slot(keys, bits, key)
-        if keys[slot] == FREE:
-            if 2 * used >= keys.size:
-                keys, numbers, bits = _doubled(keys, numbers, bits)
-                slot = find_slot(keys, bits, key)
-            keys[slot] = key
-            numbers[slot, 0] = used
-            used += 1
-        pair_of[particle] = numbers[slot, 0]
-    return keys, numbers, bits, used
-
-
-@njit(cache=True)
-def tally_pairs(first, second, third, weights, n_cells, pairs, occupied, table):  # type: ignore[no-untyped-def]
-    """Add moves from pairs of cells (from i to j, then to k) to a table, keys ``pair * n_cells + k``.
-
-    Parameters
-    ----------
-    first, second, third : (n_steps, n_particles) int array
-        Cells one lag ago, now, and one lag later.
-    weights : (n_steps,) int64 array
-        How many times each step counts [1].
-    n_cells : int
-        Number of cells.
-    pairs : tuple
-        Table with keys ``i * n_cells + j``; its values number the pairs in order of appearance (int64).
-    occupied : (n,) int64 array
-        Steps in which each pair held a particle, by number; at least as long as there are pairs.
-    table : tuple
-        Counts of earlier steps.
-
-    Returns
-    -------
-    pairs, occupied, table : tuple
-        Perhaps larger ones.
-    """
-    pair_of = np.empty(first.shape[1], np.int64)
-    held, share = np.zeros(occupied.size, np.int64), np.zeros(occupied.size)
-    for step in range(first.shape[0]):
-        weight = weights[step]
-        if weight == 0:
-            continue
-        pairs = _number_pairs(first[step], second[step], n_cells, pairs, pair_of)
-        if pairs[3] > occupied.size:
-            occupied = np.concatenate((occupied, np.zeros(pairs[3], np.int64)))
-            held, share = np.zeros(occupied.size, np.int64), np.zeros(occupied.size)
-        held[:] = 0
-        for pair in pair_of:
-            held[np.uint64(pair)] += 1
-        _add_to_occupied(held, pairs[3], weight, occupied, share)
-        table = _add_moves(pair_of, third[step], n_cells, weight, share, table)
-    return pairs, occupied, table
-
-
-def empty_table(dtype: type = np.float64, columns: int = 2) -> tuple[Any, ...]:
-    """Empty table; the table of pairs has one column of int64."""
+def empty_table() -> tuple[Any, ...]:
+    """Empty table."""
     size = 1 << START_BITS
-    return np.full(size, FREE), np.zeros((size, columns), dtype), START_BITS, 0
+    return np.full(size, FREE), np.zeros((size, 2)), START_BITS, 0
 
 
 def table_entries(table: tuple[Any, ...]) -> tuple[NDArray[np.int64], NDArray[Any]]:

@@ -211,5 +211,6 @@ def propagated(
     states = chain.states_of(starts.symbols)
     held = np.tensordot(np.asarray(kept, float), starts.number, axes=(0, 1))
     begin = np.array([np.bincount(states, of_group, chain.matrix.shape[0]) for of_group in held])
-    means = propagate.expected_values(chain.matrix, begin, shares, int(steps.max(initial=0)))
-    return rows, means[steps][:, np.arange(4), np.arange(4)]
+    # left and right are complements, as are low and up
+    means = propagate.expected_values(chain.matrix, begin, shares[[0, 2]], int(steps.max(initial=0)))[steps]
+    return rows, np.stack((means[:, 0, 0], 1 - means[:, 1, 0], means[:, 2, 1], 1 - means[:, 3, 1]), axis=1)

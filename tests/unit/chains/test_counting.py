@@ -130,7 +130,7 @@ def test_chunks_change_nothing(monkeypatch, tmp_path):
         parts = [count_moves(array, 12, 3), count_pairs(array, 12, 3)]
         for one, two in zip(whole, parts, strict=True):
             assert (one.moves != two.moves).nnz == 0 and (one.occupied == two.occupied).all()
-            assert (one.shares != two.shares).nnz == 0
+            assert abs(one.shares - two.shares).max() < ROUND_OFF  # sums of the chunks' sums
 
 
 def test_a_cell_a_diameter_keeps_only_what_occurs():
