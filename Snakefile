@@ -14,6 +14,7 @@ from snakemake.cli import get_argument_parser
 
 sys.path.insert(0, f"{workflow.basedir}/scripts")
 
+from bedchain.case.cell_checks import not_flat
 from bedchain.case.chosen import is_auto
 from bedchain.command_line.failures import failure_report
 from bedchain.lifetime import begin_run, end_all_at_sigterm
@@ -64,41 +65,43 @@ GAS = CASE["gas"]["model"] != "none"  # without it nothing of OpenFOAM is built 
 FRAMES = "frames" in CASE  # another code's or an experiment's, in place of the simulation
 DEM = [] if FRAMES else RUN["dem"]
 OPEN = CASE.get("outside") == "exit"  # particles enter and leave
+SHAPE = {key: CASE["cells"][key] for key in ("form", "layers") if key in CASE["cells"]}
+SHAPE["outside"] = CASE.get("outside", "refuse")
+FLAT = not not_flat(**SHAPE)
+TRACK = "every_s" in CASE.get("frames", {})  # a few tracers, not located in each frame: no groups that mix
 CLAIMS = source_files(f"cases/{NAME}", "claims.csv")  # about both chains of the paper
 MODEL_FIGURES = {"static": "fig3_static", "dynamic": "fig4_dynamic"}
 PLOTS = [
     "fig1_cells",
     *([] if FRAMES else ["fig2_cost"]),
-    *(MODEL_FIGURES[model] for model in MODELS if model in MODEL_FIGURES),
-    *(["fig_distribution_chosen"] if "chosen" in MODELS else []),
-    "fig5a_radial",
-    "fig5b_axial",
+    *([] if TRACK else [MODEL_FIGURES[model] for model in MODELS if model in MODEL_FIGURES]),
+    *(["fig_distribution_chosen"] if "chosen" in MODELS and not TRACK else []),
+    *([] if TRACK else ["fig5a_radial", "fig5b_axial"]),
     *(["snapshot"] if GAS else []),
     *(["fig_bubbles"] if GAS and not FRAMES else []),
-    *(["fig_difference"] if {*MODEL_FIGURES} <= {*MODELS} else []),
+    *(["fig_difference"] if {*MODEL_FIGURES} <= {*MODELS} and not TRACK else []),
     "fig_chapman_kolmogorov",
     "fig_timescales",
-    "fig_choice",
+    *([] if TRACK else ["fig_choice"]),
     "fig_modes",
     "fig_stationarity",
     *(["fig_residence"] if OPEN else []),
     *(["fig_segregation"] if "marks" in CASE else []),
-    *(["fig_discussion"] if {*MODEL_FIGURES} & {*MODELS} else []),
+    *(["fig_discussion"] if {*MODEL_FIGURES} & {*MODELS} and FLAT and not TRACK else []),
 ]
 
 
 # what people look at, on one page: of both beds where both are made
 REPORT = "results/report.html" if WITH_PAPER else f"{RESULTS}/report.html"
 TABLES = [
-    "mixing.csv",
-    "metrics.csv",
+    *([] if TRACK else ["mixing.csv", "metrics.csv", "choice.csv"]),
     "diagnostics.csv",
-    "choice.csv",
     "stationarity.csv",
     "timing.csv",
     "table1.csv",
     "table1.html",
-    *(["left_out.csv"] if FRAMES else ["audit.csv"]),
+    *([] if FRAMES else ["audit.csv"]),
+    *(["left_out.csv"] if FRAMES or not FLAT else []),
     "provenance.json",
     *(["residence.csv"] if OPEN else []),
     *(["segregation.csv"] if "marks" in CASE else []),
@@ -106,7 +109,7 @@ TABLES = [
 ]
 BED_FILES = [
     *expand(f"{FIGURES}/{{name}}{{form}}", name=PLOTS, form=FORMS.values()),
-    f"{FIGURES}/film.mp4",
+    *([] if TRACK else [f"{FIGURES}/film.mp4"]),
     *expand(f"{RESULTS}/{{name}}", name=TABLES),
 ]
 

@@ -191,7 +191,6 @@ if FRAMES:
             particles=f"{BED}/particles.npz",
             bed_series=RUN["bed_series"],
             motion=f"{BED}/motion.csv",
-            left_out=f"{RESULTS}/left_out.csv",
         log:
             f"{LOGS}/import_frames.log",
         benchmark:

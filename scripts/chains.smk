@@ -163,6 +163,25 @@ rule measure_segregation:
         "measure_segregation.py"
 
 
+# Where frames or cells cannot give all that a simulated bed with flat cells has.
+rule list_left_out:
+    input:
+        code("list_left_out"),
+        **TRAJECTORY,
+    output:
+        left_out=f"{RESULTS}/left_out.csv",
+    log:
+        f"{LOGS}/list_left_out.log",
+    conda:
+        "../envs/python.yaml"
+    params:
+        **SHAPE,
+        imported=FRAMES,
+        track=TRACK,
+    script:
+        "list_left_out.py"
+
+
 rule discuss_errors:
     input:
         code("discuss_errors"),
@@ -313,7 +332,7 @@ rule write_provenance:
     input:
         code("write_provenance"),
         dem=TRAJECTORY["metadata"] if FRAMES else RUN["dem"],
-        metrics=rules.compare_mixing.output.metrics,
+        metrics=[] if TRACK else rules.compare_mixing.output.metrics,
         timing=rules.time_models.output.timing,
     output:
         provenance=f"{RESULTS}/provenance.json",

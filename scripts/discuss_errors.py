@@ -74,7 +74,7 @@ def discuss_errors(
     run = open_bed(bed)
     learned, compared = (part.frames(run.times_s) for part in (learning, comparison))
     size, own_lag = (run.width_m, run.height_m), lag_frames(case.lag_s, run.interval_s)
-    own_grid = Grid(*size, case.columns, case.rows)
+    own_grid = case.flat_grid(*size)
     grids = [Grid(*size, *(max(1, round(length / cell)) for length in size)) for cell in scanned.cell_sizes_m]
     lags = [round(lag / run.interval_s) for lag in scanned.lags_s if is_whole(lag / run.interval_s)]
     lengths = [part.stop - part.start - 1 for part in (learned, compared)]

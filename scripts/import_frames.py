@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Somebody else's frames as the trajectory of a case, and what cannot be made of them: left_out.csv."""
+"""Somebody else's frames as the trajectory of a case, and what their motion says of them."""
 
 from dataclasses import dataclass
 from pathlib import Path
@@ -37,19 +37,16 @@ class Tables:
         Mean height of the particles over time.
     motion : Path
         Displacements beside velocities, interval by interval.
-    left_out : Path
-        What a simulated bed has and these frames cannot give.
     """
 
     bed_series: Path
     motion: Path
-    left_out: Path
 
 
 def import_frames(
     section: dict[str, Any], folder: Path, box: Box, targets: Targets, tables: Tables, progress: bool = True
 ) -> None:  # fmt: skip
-    """Store the frames, check them as physics, and say what is left out.
+    """Store the frames and check them as physics.
 
     Parameters
     ----------
@@ -83,14 +80,11 @@ def import_frames(
         LOG.info("note: %s", note)
     for warning in motion.warnings():
         LOG.warning("warning: %s", warning)
-    table = left_out(bool(np.isfinite(store[0, 2:4]).any()))
-    write_csv(table, tables.left_out)
     LOG.info(
         "%d frames of %d particles, first at %g s of the files, which is t = 0 here",
         *store.shape[::2],
         frames.start_s,
     )
-    LOG.info("left out, since these are frames and no simulation:\n%s", table.to_string(index=False))
 
 
 def bed_series(store: np.ndarray, times_s: np.ndarray) -> pd.DataFrame:
@@ -98,24 +92,11 @@ def bed_series(store: np.ndarray, times_s: np.ndarray) -> pd.DataFrame:
     heights, numbers = [], []
     for first in range(0, len(store), CHUNK_FRAMES):
         z = np.array(store[first : first + CHUNK_FRAMES, 1], float)
-        heights += np.nanmean(z, axis=1).tolist()
-        numbers += np.isfinite(z).sum(axis=1).tolist()
+        number = np.isfinite(z).sum(axis=1)
+        with np.errstate(invalid="ignore"):  # no height where no tracer was located
+            heights += (np.nansum(z, axis=1) / number).tolist()
+        numbers += number.tolist()
     return pd.DataFrame({"time_s": times_s, "mean_height_m": heights, "particles_1": numbers})
-
-
-def left_out(velocities: bool) -> pd.DataFrame:
-    """What is not made of frames, and why: product, reason."""
-    rows = [
-        ("snapshot, pressure drop, voidage of the gas", "no gas in the frames"),
-        ("audit.csv", "stiffness, step and gas of the other code are not known"),
-        ("fig2_cost, the DEM in timing.csv", "no timing of the code that wrote the frames"),
-        ("noise floor of metrics.csv", "no repeats: the frames are there once"),
-    ]
-    if not velocities:
-        rows.append(
-            ("velocities of the frames, motion.csv", "no velocities: differences of positions are taken")
-        )
-    return pd.DataFrame(rows, columns=["product", "reason"])
 
 
 if rule := globals().get("snakemake"):

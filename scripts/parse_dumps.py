@@ -4,7 +4,7 @@
 from pathlib import Path
 
 from bedchain.stage import LOG, run_stage
-from bedchain.trajectory.store import write_trajectory
+from bedchain.trajectory.stored_dumps import write_trajectory
 
 
 def parse_dumps(

@@ -31,7 +31,6 @@ from bedchain.studies.scores.rows import dem_rows, score_rows
 from bedchain.studies.scores.search_spaces import candidates
 from bedchain.studies.scores.selection import disagreement, select
 from bedchain.trajectory.frames import Window, lag_frames
-from bedchain.trajectory.grid import Grid
 from bedchain.trajectory.realisations import Realisation, open_bed, open_repeats
 from bedchain.trajectory.regrid import regrid
 from bedchain.trajectory.store import BedFiles
@@ -114,7 +113,7 @@ def score_models(
     """
     run = open_bed(bed)
     runs = [run, *open_repeats(repeats, run)]
-    grid = Grid(run.width_m, run.height_m, case.columns, case.rows)
+    grid = case.flat_grid(run.width_m, run.height_m)
     which = learning.frames(run.times_s)
     compared = comparison.frames(run.times_s)
     if compared.start + 1 < which.stop:

@@ -189,6 +189,7 @@ rule score_models:
     params:
         **pick(CASE, "cells", "chain.lag_s", "chain.estimator", "chain.seed", "mixing"),
         **pick(CASE, "particles.diameter_m", "figures.batch_height_m", "figures.moments_s"),
+        outside=CASE.get("outside", "refuse"),
         learning=CASE["learning"],
         comparison=pick(CASE, "comparison.start_s", "comparison.end_s"),
     script:

@@ -18,8 +18,8 @@ from bedchain.errors import UserError, report_user_errors
 from bedchain.files import write_text
 from bedchain.trajectory.first_case import first_case
 from bedchain.trajectory.forms.files import FormSettings
+from bedchain.trajectory.frame_files import FrameSettings
 from bedchain.trajectory.frames_of_case import measured_sections
-from bedchain.trajectory.survey import FrameSettings
 from bedchain.workflow import CASES, case_names
 
 

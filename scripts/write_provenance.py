@@ -12,7 +12,7 @@ from bedchain.stage import LOG, run_stage
 
 
 def write_provenance(
-    case: Case, dem: Path, metrics: Path, timing: Path, benchmarks: Path, provenance: Path
+    case: Case, dem: Path, metrics: Path | list[Path], timing: Path, benchmarks: Path, provenance: Path
 ) -> None:
     """Write versions, commit, case, seeds, machine, and what each job took.
 
@@ -22,7 +22,7 @@ def write_provenance(
         The case with its defaults, without the looks of its figures.
     dem, metrics, timing : Path
         Files that the results rest on; their SHA-256 are noted. Of imported frames ``trajectory.json``
-        stands in place of dem.json.
+        stands in place of dem.json; of tracers there are no metrics.
     benchmarks : Path
         Folder of Snakemake's benchmark files.
     provenance : Path
@@ -36,7 +36,11 @@ def write_provenance(
         "packages": {"debian": debian_packages(), "python": python_packages()},
         "machine": machine(),
         "times": rule_times(benchmarks),
-        "sha256": {name: hashlib.sha256(file.read_bytes()).hexdigest() for name, file in inputs.items()},
+        "sha256": {
+            name: hashlib.sha256(file.read_bytes()).hexdigest()
+            for name, file in inputs.items()
+            if isinstance(file, Path)
+        },
     }
     write_text(provenance, json.dumps(record, indent=2) + "\n")
     LOG.info("commit %s, %d jobs timed, in %s", record["git"]["commit"], len(record["times"]), provenance)

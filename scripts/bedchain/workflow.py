@@ -21,8 +21,8 @@ from bedchain.command_line.targets import check_options, check_targets
 from bedchain.command_line.words import as_typed, check_words
 from bedchain.errors import UserError, guess, report_user_errors
 from bedchain.trajectory.archive import SIMULATE, check_archive
+from bedchain.trajectory.frame_files import files_of
 from bedchain.trajectory.frames_of_case import measured_sections, settings_of
-from bedchain.trajectory.survey import files_of
 
 TABLE_SECTIONS = (
     "bed",

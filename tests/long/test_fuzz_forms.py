@@ -9,9 +9,10 @@ from random import Random
 import numpy as np
 import pytest
 
+from bedchain.trajectory.bed_frames import Placement, bed_frame
 from bedchain.trajectory.forms.files import FormSettings
-from bedchain.trajectory.imported import Placement, bed_frame
-from bedchain.trajectory.survey import FrameSettings, loaded, survey
+from bedchain.trajectory.frame_files import FrameSettings, loaded
+from bedchain.trajectory.survey import survey
 from made.damaged import Target, try_damaged
 from made.forms import COLUMNS, STEP_S, moving, write_form
 from made.mutations import mutated

@@ -32,12 +32,13 @@ from bedchain.trajectory.archive import check_archive, check_files
 from bedchain.trajectory.cell_store import write_cells
 from bedchain.trajectory.dumps import frame_of, read_dump
 from bedchain.trajectory.forms.files import FormSettings, frames_of
+from bedchain.trajectory.frame_files import files_of
 from bedchain.trajectory.frames import Window
 from bedchain.trajectory.grid import Grid
 from bedchain.trajectory.packed_positions import FILTERS, read_levels, write_levels
 from bedchain.trajectory.realisations import open_bed
-from bedchain.trajectory.store import BedFiles, write_trajectory
-from bedchain.trajectory.survey import files_of
+from bedchain.trajectory.store import BedFiles
+from bedchain.trajectory.stored_dumps import write_trajectory
 from made import ROOT
 from made.case_text import CASE
 from made.forms import COLUMNS as FORM_COLUMNS

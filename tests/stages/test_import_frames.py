@@ -17,16 +17,14 @@ SECTION = {
 }  # fmt: skip
 
 
-def test_frames_are_stored_with_their_series_and_a_table_of_what_is_left_out(tmp_path, caplog):
+def test_frames_are_stored_with_their_series(tmp_path, caplog):
     series = moving()
     write_form("text", tmp_path / "in", series)
     targets = Targets(*(tmp_path / name for name in ("trajectory.npy", "trajectory.json", "particles.npz")))
-    tables = Tables(*(tmp_path / f"{name}.csv" for name in ("bed_series", "motion", "left_out")))
+    tables = Tables(*(tmp_path / f"{name}.csv" for name in ("bed_series", "motion")))
     with caplog.at_level(logging.INFO, "bedchain"):
         import_frames(SECTION, tmp_path / "in", Box(0.1, 0.2, "refuse"), targets, tables, progress=False)
     heights = read_series(tables.bed_series)["mean_height_m"]
     np.testing.assert_allclose(heights, series.positions[:, :, 2].mean(axis=1) + 0.02, rtol=1e-5)
     assert len(pd.read_csv(tables.motion)) == 5
-    left_out = pd.read_csv(tables.left_out)
-    assert "no gas in the frames" in set(left_out["reason"])
-    assert "6 frames of 20 particles" in caplog.text and "left out" in caplog.text
+    assert "6 frames of 20 particles" in caplog.text

@@ -68,3 +68,21 @@ def models_go_with_the_cells(form: str, axis: str, layers: int, models: list[str
         cells = "boxes in layers" if form == "boxes" else form
         wrong = f"{', '.join(flat)} knows places along x and z only, and the cells are {cells}"
         yield "chain.models", wrong, "leave it out, or take flat boxes"
+
+
+def not_flat(form: str = "boxes", layers: int = 1, outside: str = "refuse") -> str:
+    """Reason why chains of other cells cannot be studied beside those of a case; empty where they can.
+
+    Parameters
+    ----------
+    form, layers
+        Of the cells of the case.
+    outside : {"refuse", "exit"}
+        Whether particles may leave the bed.
+    """
+    if form != "boxes" or layers > 1:
+        cells = "boxes in layers" if form == "boxes" else form
+        return f"other cells and lags are studied on flat boxes only, and the cells are {cells}"
+    if outside == "exit":
+        return "other cells and lags are studied in closed beds only, and particles may leave this one"
+    return ""

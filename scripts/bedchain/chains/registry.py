@@ -15,6 +15,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from bedchain.array_files import read_arrays
+from bedchain.case.cell_checks import not_flat
 from bedchain.chains import dynamic, jump, recurrence, static, velocity_class
 from bedchain.chains.between_steps import Fractions
 from bedchain.chains.chain import Chain
@@ -88,12 +89,29 @@ class CaseChains:
         Of a step [s].
     estimator : {"literal", "per_step", "pooled"}
         How counts become probabilities.
+    layers, form, outside
+        Of the cells, and whether particles may leave: see `not_flat`.
     """
 
     columns: int
     rows: int
     lag_s: float
     estimator: str
+    layers: int = field(default=1, kw_only=True)
+    form: str = field(default="boxes", kw_only=True)
+    outside: str = field(default="refuse", kw_only=True)
+
+    def flat_grid(self, width_m: float, height_m: float) -> Grid:
+        """The cells over a bed of this size.
+
+        Raises
+        ------
+        DataError
+            They are no flat boxes, or particles may leave the bed.
+        """
+        if reason := not_flat(self.form, self.layers, self.outside):
+            raise DataError(f"{reason}: take a case of its own for these studies")
+        return Grid(width_m, height_m, self.columns, self.rows)
 
 
 def learn(

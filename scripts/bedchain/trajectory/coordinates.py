@@ -13,7 +13,7 @@ The arc is the angle times the radius of the cylinder. About a horizontal axis, 
 and goes by -x to the bottom and on by +x; about a vertical one it starts at +x and goes by -y to -x and +y.
 """
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -24,6 +24,7 @@ from bedchain.errors import DataError
 Array = NDArray[Any]
 # width, height and depth may differ by so much of the width in a cylinder
 ROUND = 1e-3
+ROUND_OFF = 1e-6
 
 
 class Size(NamedTuple):
@@ -169,3 +170,53 @@ def coordinates_of(form: str, axis: str, size: Size) -> Coordinates:
             f"as {name} as wide, the box around its cylinder"
         )
     return COORDINATES[form, axis]
+
+
+def limit_of(form: str, length_m: float, values: Array) -> float:
+    """Largest value inside: the wall as it is stored, or up to the round-off of a distance [m]."""
+    if form != "boxes":
+        return length_m * (1 + ROUND_OFF)
+    dtype = values.dtype if np.issubdtype(values.dtype, np.floating) else np.float64
+    return max(length_m, float(np.asarray(length_m, dtype=dtype)))
+
+
+def check_inside(
+    names: Sequence[str],
+    coordinates: Sequence[Array],
+    lengths_m: Sequence[float],
+    form: str,
+    first_frame: int,
+) -> None:
+    """Refuse particles outside the bed.
+
+    Parameters
+    ----------
+    names : sequence of str
+        Of the coordinates.
+    coordinates : sequence of (n_particles,) or (n_frames, n_particles) array
+        [m].
+    lengths_m : sequence of float
+        Largest value of each [m].
+    form : str
+        Of the cells.
+    first_frame : int
+        Number of the first frame, for the message.
+
+    Raises
+    ------
+    DataError
+        The first such particle is named, with its frame and distance.
+    """
+    for name, values, top in zip(names, coordinates, lengths_m, strict=False):
+        limit = limit_of(form, top, values)
+        if values.size == 0 or (values.min() >= 0 and values.max() <= limit):
+            continue
+        index = tuple(int(i) for i in np.argwhere(~((values >= 0) & (values <= limit)))[0])
+        value = float(values[index])
+        excess = -value if value < 0 else value - top
+        frame = first_frame + (index[0] if len(index) > 1 else 0)
+        raise DataError(
+            f"particle {index[-1]} (counted from 0) in frame {frame} is at {name} = {value:g} m, "
+            f"{excess:g} m outside the bed (0 to {top:g} m): check the bed's size in the case file, "
+            "or whether particles leave the bed"
+        )

@@ -9,10 +9,11 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from bedchain.errors import UserError
+from bedchain.trajectory.bed_frames import Placement, bed_frame
+from bedchain.trajectory.frame_files import FrameSettings, loaded
 from bedchain.trajectory.frames_of_case import corner_and_sizes, mean_diameter
-from bedchain.trajectory.imported import Placement, bed_frame
 from bedchain.trajectory.motion import MotionCheck, seams
-from bedchain.trajectory.survey import FrameSettings, Survey, check_even, loaded, survey
+from bedchain.trajectory.survey import UNEVEN, Survey, check_even, survey
 
 CELL_DIAMETERS = 5
 MOST_CELLS = 20  # along a side, for a start
@@ -21,7 +22,15 @@ LEARNED = (0.1, 0.55)  # of the time of the frames
 LARGEST_M = 10.0  # a bed beyond it is in millimetres
 GUESSED_DIAMETER = 0.01  # of the width, where the frames have no radius
 ROUND = 0.1  # an estimated step within it of 1, 2 or 5 times a power of ten is that
+FEWEST_IN_CELL = 20  # positions of all frames, so that a cell is left some times
 Line = tuple[str, str]
+
+
+class Clock(NamedTuple):
+    """Number of frames that the chain sees, and the time between them [s]."""
+
+    frames: int
+    interval_s: float
 
 
 class FirstCase(NamedTuple):
@@ -61,6 +70,13 @@ def first_case(settings: FrameSettings, folder: Path, title: str) -> FirstCase:
             (f"length_unit_m: {scaled.length_unit_m:g}", "the box would be larger than 10 m; correct it")
         )
         look = survey(scaled if clocked else replace(scaled, step_s=1.0), folder)
+    if is_track(look):
+        scaled, more = _of_track(scaled, settings)
+        frames = survey(scaled, folder)
+        every_s = round_up(frames.interval_s)
+        more.append((f"every_s: {every_s:g}", "a round number of at least the usual time between locations"))
+        clock = Clock(int(frames.entries[-1].time_s / every_s) + 1, every_s)
+        return FirstCase(_text(title, scaled, frames, [*lines, *more], clock), frames.notes)
     stepped = any(entry.step is not None for entry in look.entries)
     motion = _motion(look, replace(scaled, step_s=scaled.step_s or 1.0))
     if not clocked and stepped:
@@ -80,7 +96,32 @@ def first_case(settings: FrameSettings, folder: Path, title: str) -> FirstCase:
         ]
     frames = survey(scaled, folder)
     check_even(frames)
-    return FirstCase(_text(title, scaled, frames, [*lines, *_identity(frames)]), frames.notes)
+    clock = Clock(len(frames.entries), frames.interval_s)
+    return FirstCase(_text(title, scaled, frames, [*lines, *_identity(frames)], clock), frames.notes)
+
+
+def is_track(look: Survey) -> bool:
+    """Whether frames are the locations of a single tracer at uneven times, such as those of PEPT."""
+    gaps = np.diff([entry.time_s for entry in look.entries])
+    uneven = bool((np.abs(gaps - look.interval_s) > UNEVEN * look.interval_s).any())
+    return (
+        uneven and "id" not in look.columns and np.median([entry.number or 0 for entry in look.entries]) == 1
+    )
+
+
+def _of_track(scaled: FrameSettings, given: FrameSettings) -> tuple[FrameSettings, list[Line]]:
+    """Settings of a track, and what to say of them."""
+    lines = [("without_ids: one_tracer", "no ids: all rows are taken for locations of one tracer")]
+    if scaled.length_unit_m != given.length_unit_m and given.time_unit_s == 1:
+        scaled = replace(scaled, time_unit_s=1e-3)
+        lines.append(("time_unit_s: 0.001", "tracks in millimetres have their times in ms; correct it"))
+    return scaled, lines
+
+
+def round_up(value: float) -> float:
+    """The next 1, 2 or 5 times a power of ten."""
+    power = 10.0 ** np.floor(np.log10(value))
+    return float(f"{next(power * factor for factor in (1, 2, 5, 10) if power * factor >= value):.3g}")
 
 
 def _decimal(value: float | None) -> str:
@@ -141,7 +182,7 @@ def _identity(frames: Survey) -> list[Line]:
     return [("without_ids: order", "no ids: right only where all frames list the particles in one order")]
 
 
-def _text(title: str, settings: FrameSettings, frames: Survey, lines: Sequence[Line]) -> str:
+def _text(title: str, settings: FrameSettings, frames: Survey, lines: Sequence[Line], clock: Clock) -> str:
     section: dict[str, Any] = {"across": "x", "up": "z"}
     corner, (width, _, height) = corner_and_sizes(frames, section)
     if min(width, height) <= 0:
@@ -150,10 +191,11 @@ def _text(title: str, settings: FrameSettings, frames: Survey, lines: Sequence[L
         )
     diameter = mean_diameter(frames)
     cell = CELL_DIAMETERS * (diameter or GUESSED_DIAMETER * width)
-    columns, rows = (_cells(length, cell) for length in (width, height))
-    windows = _windows(len(frames.entries), frames.interval_s)
+    most = int(max(1, min(MOST_CELLS, (frames.number * clock.frames / FEWEST_IN_CELL) ** 0.5)))
+    columns, rows = (_cells(length, cell, most) for length in (width, height))
+    windows = _windows(*clock)
     box = "as the files say" if frames.from_header else "what the particles stay in"
-    split = _split(frames, settings, corner[2], height / rows)
+    split = _split(frames, settings, corner[2], rows, height / rows)
     names = settings.reading.names
     given = [(f"names: [{', '.join(names)}]", "as given")] if names else []
     rows_of_text: list[tuple[str, str]] = [
@@ -161,7 +203,8 @@ def _text(title: str, settings: FrameSettings, frames: Survey, lines: Sequence[L
         ("", ""),
         (
             "frames:",
-            f"{len(frames.entries)} frames of {frames.number} particles, {frames.interval_s:g} s apart",
+            f"{len(frames.entries)} frames of {frames.number} particles, "
+            f"{'mostly ' if clock.interval_s != frames.interval_s else ''}{frames.interval_s:g} s apart",
         ),
         (f'  files: "{settings.files}"', ""),
         *((f"  {line}", reason) for line, reason in [*lines, *given]),
@@ -175,7 +218,7 @@ def _text(title: str, settings: FrameSettings, frames: Survey, lines: Sequence[L
             "mean of the first frame" if diameter else "a guess, the frames have no radius: correct it",
         ),
     ]
-    if len({entry.number for entry in frames.entries}) > 1:
+    if len({entry.number for entry in frames.entries}) > 1 and not is_track(frames):
         rows_of_text.append(("outside: exit", "the number of particles changes"))
     rows_of_text += [
         ("", ""),
@@ -192,8 +235,8 @@ def _text(title: str, settings: FrameSettings, frames: Survey, lines: Sequence[L
     )
 
 
-def _cells(length: float, cell: float) -> int:
-    number = max(1, min(MOST_CELLS, int(length / cell)))
+def _cells(length: float, cell: float, most: int) -> int:
+    number = max(1, min(most, int(length / cell)))
     return number - number % 2 if number > 1 else number
 
 
@@ -203,8 +246,9 @@ def _windows(n_frames: int, interval_s: float) -> tuple[float, float, float]:
     return tuple(float(f"{at * interval_s:.12g}") for at in (start, middle, last))  # type: ignore[return-value]
 
 
-def _split(frames: Survey, settings: FrameSettings, bottom_m: float, row_m: float) -> float:
-    entry = frames.entries[0]
-    values = next(values for _, values in loaded([entry], settings))
-    height = float(np.median(values["z"])) * settings.length_unit_m - bottom_m
-    return max(1, round(height / row_m)) * row_m
+def _split(frames: Survey, settings: FrameSettings, bottom_m: float, rows: int, row_m: float) -> float:
+    """Border of two rows nearest to the median height, of the first frame or of a whole track [m]."""
+    entries = frames.entries if is_track(frames) else frames.entries[:1]
+    heights = np.concatenate([values["z"] for _, values in loaded(entries, settings)])
+    height = float(np.median(heights)) * settings.length_unit_m - bottom_m
+    return min(max(1, rows - 1), max(1, round(height / row_m))) * row_m

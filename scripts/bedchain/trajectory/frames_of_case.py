@@ -8,10 +8,11 @@ from typing import Any
 import numpy as np
 
 from bedchain.errors import UserError
+from bedchain.trajectory.bed_frames import Placement
 from bedchain.trajectory.forms.files import FormSettings
 from bedchain.trajectory.forms.raw import POSITION
-from bedchain.trajectory.imported import Placement
-from bedchain.trajectory.survey import FrameSettings, Survey, cached_survey, check_even, load
+from bedchain.trajectory.frame_files import FrameSettings, load
+from bedchain.trajectory.survey import Survey, cached_survey, check_even
 
 Case = dict[str, Any]
 MOMENTS = (1, 2, 4, 8, 16, 32)  # of the figures, in lags

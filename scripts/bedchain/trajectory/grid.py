@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from bedchain.errors import DataError
-from bedchain.trajectory.coordinates import Coordinates, Size, coordinates_of
+from bedchain.trajectory.coordinates import Coordinates, Size, check_inside, coordinates_of, limit_of
 
 # cell of a particle that is not in the frame, or is outside a bed that it may leave
 OUTSIDE = -1
@@ -226,7 +226,7 @@ class Grid:
         if x.shape != z.shape:
             raise DataError(f"{x.shape} positions along x but {z.shape} along z")
         values = self._coordinates(x, z, y_m)
-        self._check_inside(values, first_frame)
+        check_inside(self.coordinates.names, values, self.lengths_m, self.form, first_frame)
         cells = np.zeros(x.shape, np.int32)
         for value, length, count in list(zip(values, self.lengths_m, self.counts, strict=False))[::-1]:
             if count > 1:
@@ -255,7 +255,7 @@ class Grid:
         if may_leave:
             values = self._coordinates(x, z, y)
             for value, length in zip(values, self.lengths_m, strict=False):
-                seen &= (value >= 0) & (value <= self._limit(length, value))
+                seen &= (value >= 0) & (value <= limit_of(self.form, length, value))
         if seen.all():
             return self.cell_of(x, z, first_frame, y)
         inside = [
@@ -277,30 +277,6 @@ class Grid:
         y = np.full(np.shape(x), self.depth_m / 2) if y_m is None else np.asarray(y_m)
         values = list(self.coordinates.of(x, z, y, self.size))
         return values[: 3 if self.is_deep else 2]
-
-    def _limit(self, length: float, values: NDArray[Any]) -> float:
-        """Largest value inside: the wall as it is stored, or up to the round-off of a distance."""
-        if self.form != "boxes":
-            return length * (1 + 1e-6)
-        dtype = values.dtype if np.issubdtype(values.dtype, np.floating) else np.float64
-        return max(length, float(np.asarray(length, dtype=dtype)))
-
-    def _check_inside(self, coordinates: list[NDArray[Any]], first_frame: int) -> None:
-        for name, values, top in zip(self.coordinates.names, coordinates, self.lengths_m, strict=False):
-            if values.size == 0:
-                continue
-            limit = self._limit(top, values)
-            if values.min() >= 0 and values.max() <= limit:
-                continue
-            index = tuple(int(i) for i in np.argwhere(~((values >= 0) & (values <= limit)))[0])
-            value = float(values[index])
-            excess = -value if value < 0 else value - top
-            frame = first_frame + (index[0] if len(index) > 1 else 0)
-            raise DataError(
-                f"particle {index[-1]} (counted from 0) in frame {frame} is at {name} = {value:g} m, "
-                f"{excess:g} m outside the bed (0 to {top:g} m): check the bed's size in the case file, "
-                "or whether particles leave the bed"
-            )
 
     def check_resolution(self, resolution_m: float) -> None:
         """Refuse cells finer than the resolution of the data.

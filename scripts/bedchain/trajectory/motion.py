@@ -13,7 +13,7 @@ from typing import NamedTuple
 import numpy as np
 import pandas as pd
 
-from bedchain.trajectory.survey import Entry
+from bedchain.trajectory.frame_files import Entry
 
 # of the slope of all intervals: velocities that turn within an interval lower it
 SLOPE_RANGE = (0.5, 1.25)

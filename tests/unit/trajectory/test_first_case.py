@@ -9,7 +9,7 @@ import yaml
 
 from bedchain.errors import UserError
 from bedchain.trajectory.first_case import first_case
-from bedchain.trajectory.survey import FrameSettings
+from bedchain.trajectory.frame_files import FrameSettings
 from made.forms import BOX, STEP_S, moving, write_form
 
 SERIES = moving(n_frames=20, n_particles=60)
@@ -57,6 +57,26 @@ def test_frames_without_ids_say_what_that_means(tmp_path):
         (tmp_path / f"f{frame}.csv").write_text("x,z\n" + rows + "\n")
     text = first_case(FrameSettings(f"{tmp_path}/*", step_s=0.1), Path(), "frames").text
     assert "without_ids: order  # no ids" in text and "a guess" in text
+
+
+def test_a_track_gets_even_times_few_cells_and_the_units_of_tracks(tmp_path):
+    """Locations of one tracer in mm and ms, out of order, two of them at one time, as PEPT gives them."""
+    rng = np.random.default_rng(1)
+    places = 100 + 15 * np.sin(np.cumsum(rng.normal(0, 0.4, (400, 3)), axis=0))
+    times = np.cumsum(rng.uniform(5, 25, 400))
+    times[7] = times[6]
+    rows = rng.permutation(np.column_stack((times, places, rng.random(400))))
+    lines = "\n".join(" ".join(f"{value:.18e}" for value in row) for row in rows)
+    (tmp_path / "track.csv").write_text("# t x y z error\n" + lines + "\n")
+    case = case_of(tmp_path / "track.csv")
+    assert case["frames"] | {"files": "", "origin_m": []} == {
+        "files": "", "origin_m": [], "length_unit_m": 0.001, "time_unit_s": 0.001, "every_s": 0.02,
+        "without_ids": "one_tracer", "up": "z", "across": "x",
+    }  # fmt: skip
+    assert case["bed"]["width_m"] == pytest.approx(0.03, abs=5e-3) and "outside" not in case
+    assert case["cells"]["columns"] * case["cells"]["rows"] <= 20
+    assert 0 < case["mixing"]["split_z_m"] < case["bed"]["height_m"]
+    assert case["comparison"]["end_s"] <= (times.max() - times.min()) / 1000
 
 
 def test_what_cannot_be_a_case_is_refused(tmp_path):

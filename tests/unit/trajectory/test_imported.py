@@ -8,11 +8,13 @@ import numpy as np
 import pytest
 
 from bedchain.errors import UserError
+from bedchain.trajectory.bed_frames import Placement
 from bedchain.trajectory.forms.files import FormSettings
-from bedchain.trajectory.imported import Placement, Targets, write_imported
+from bedchain.trajectory.frame_files import FrameSettings
+from bedchain.trajectory.imported import Targets, write_imported
 from bedchain.trajectory.particles import read_particles
 from bedchain.trajectory.store import open_trajectory
-from bedchain.trajectory.survey import FrameSettings, survey
+from bedchain.trajectory.survey import survey
 from made.forms import BOX, COLUMNS, FORMS, STEP_S, Series, moving, text_frame, write_form
 
 SERIES = moving()
@@ -124,29 +126,3 @@ def test_a_frame_with_a_fault_is_refused(tmp_path, change):
     write_form("text", tmp_path / "in", broken)
     with pytest.raises(UserError, match=rf"step \d+: {CHANGES[change][1]}"):
         stored(tmp_path)
-
-
-@pytest.mark.parametrize(
-    ("name", "message"), [("types", "the type of a particle"), ("radii", "the radius of a")]
-)
-def test_an_id_that_means_another_particle_is_refused(tmp_path, name, message):
-    (tmp_path / "in").mkdir()
-    (tmp_path / "in" / "a").write_text(text_frame(SERIES, 0))
-    other = SERIES._replace(**{name: np.roll(getattr(SERIES, name) * np.linspace(1, 2, 20), 1).round(4)})
-    (tmp_path / "in" / "b").write_text(text_frame(other, 1).replace(".0 ", " "))
-    with pytest.raises(UserError, match=message if name == "radii" else "whole number|" + message):
-        stored(tmp_path)
-
-
-def test_frames_without_ids_are_refused_or_taken_in_order(tmp_path):
-    (tmp_path / "in").mkdir()
-    for frame in range(3):
-        (tmp_path / "in" / f"f{frame}.csv").write_text("x,z\n0.01,0.02\n0.03,0.04\n")
-    with pytest.raises(UserError, match="no column of ids, .* say frames.without_ids: order"):
-        stored(tmp_path)
-    store, about, _ = stored(tmp_path, placement=replace(PLACE, origin_m=(0, 0, 0), without_ids="order"))
-    assert (
-        about["number"] == 2
-        and np.isnan(store[:, 2:]).all()
-        and (store[:, 0] == np.float32([0.01, 0.03])).all()
-    )

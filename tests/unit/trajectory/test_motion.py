@@ -4,8 +4,8 @@
 import numpy as np
 import pytest
 
+from bedchain.trajectory.frame_files import Entry
 from bedchain.trajectory.motion import MotionCheck
-from bedchain.trajectory.survey import Entry
 
 INTERVAL_S = 0.01
 IDS = np.arange(400)

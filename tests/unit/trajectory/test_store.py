@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""The trajectory of a run, and every fault of its manifest and frames named; runs are in tests/stages."""
+"""The trajectory of a run, and every fault of its manifest named; runs are in tests/stages."""
 
 import json
 import os
@@ -8,8 +8,8 @@ import numpy as np
 import pytest
 
 from bedchain.errors import UserError
-from bedchain.fingerprints import fingerprint_of
-from bedchain.trajectory.store import RECORD, open_trajectory, read_manifest, write_trajectory
+from bedchain.trajectory.store import open_trajectory, read_manifest
+from bedchain.trajectory.stored_dumps import write_trajectory
 from made.synthetic_bed import rolling_bed, write_run
 
 TIMES = np.round(np.arange(0, 0.2 + 1e-9, 0.025), 6)
@@ -22,34 +22,11 @@ def bed(tmp_path):
     return frames, write_run(tmp_path, frames, TIMES, 0.08, 0.2, segment=0.1)
 
 
-def parse(dem):
-    files = dem.parent / "trajectory.npy", dem.parent / "trajectory.json"
-    write_trajectory(dem, *files, 0.08, 0.2, progress=False)
-    return open_trajectory(*files)
-
-
 def changed(dem, change):
     """The manifest with a change made to it."""
     manifest = json.loads(dem.read_text())
     change(manifest)
     dem.write_text(json.dumps(manifest))
-
-
-def test_frames_come_back_in_single_precision_and_by_id(bed):
-    frames, dem = bed
-    store, about = parse(dem)
-    assert (store == frames.astype(np.float32)).all()
-    assert about["times_s"] == pytest.approx(TIMES) and (about["ids"], about["number"]) == ([1, 20], 20)
-
-
-def test_columns_that_the_dumps_lack_are_nothing_or_refused(bed):
-    _, dem = bed
-    changed(dem, lambda manifest: manifest.update(columns=["id", "x", "z", "fx", "fz"]))
-    store, _ = parse(dem)
-    assert np.isfinite(store[:, :2]).all() and np.isnan(store[:, 2:]).all()
-    changed(dem, lambda manifest: manifest.update(columns=["id", "x", "y", "vx", "vz"]))
-    with pytest.raises(UserError, match="the dumps hold id x y vx vz, x and z are needed"):
-        parse(dem)
 
 
 @pytest.mark.parametrize(
@@ -70,36 +47,13 @@ def test_a_manifest_that_is_not_in_order_is_refused(bed, change, message):
         read_manifest(bed[1])
 
 
-def test_a_frame_of_another_step_or_with_a_particle_less_leaves_nothing(bed, tmp_path):
-    _, dem = bed
-    changed(dem, lambda manifest: manifest["frames"][5].update(step=7000))
-    with pytest.raises(UserError, match="frame 5 of .*its step is 6250, 7000 expected; put whole frames"):
-        parse(dem)
-    changed(dem, lambda manifest: manifest.update(number=21))
-    with pytest.raises(UserError, match="frame 0 of .*it holds 20 particles, 21 expected"):
-        parse(dem)
-    assert not list(tmp_path.glob("trajectory*"))
-
-
 def test_a_store_of_another_shape_is_refused(bed):
     _, dem = bed
-    parse(dem)
+    files = dem.parent / "trajectory.npy", dem.parent / "trajectory.json"
+    write_trajectory(dem, *files, 0.08, 0.2, progress=False)
     np.save(dem.parent / "trajectory.npy", np.zeros((3, 4, 20), np.float32))
     with pytest.raises(UserError, match=r"has the shape \(3, 4, 20\), \(9, 4, 20\) expected"):
-        open_trajectory(dem.parent / "trajectory.npy", dem.parent / "trajectory.json")
-
-
-def test_a_frame_with_other_bytes_has_its_segment_made_again(bed):
-    _, dem = bed
-    frame = dem.parent / json.loads(dem.read_text())["frames"][5]["file"]
-    changed(dem, lambda manifest: manifest["frames"][5].update(fingerprint_of(frame)))
-    (frame.parent / RECORD).write_text("{}")
-    content = bytearray(frame.read_bytes())
-    content[-1] ^= 1  # one bit of a velocity
-    frame.write_bytes(content)
-    with pytest.raises(UserError, match="frame 5 of .*changed.*same command again: it makes segment_0002"):
-        parse(dem)
-    assert not dem.exists() and [file.name for file in frame.parent.glob("*.json*")] == [f"{RECORD}.damaged"]
+        open_trajectory(*files)
 
 
 @pytest.mark.parametrize(
@@ -126,7 +80,7 @@ def test_a_pipe_in_place_of_a_frame_or_of_the_manifest_is_refused(bed):
     frame.unlink()
     os.mkfifo(frame)
     with pytest.raises(UserError, match=f"{frame.name} is a special file"):
-        parse(dem)
+        read_manifest(dem)
     dem.unlink()
     os.mkfifo(dem)
     with pytest.raises(UserError, match="dem.json is a special file"):

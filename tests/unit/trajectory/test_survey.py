@@ -11,15 +11,8 @@ import pytest
 
 from bedchain.errors import UserError
 from bedchain.trajectory.forms.files import FormSettings
-from bedchain.trajectory.survey import (
-    FrameSettings,
-    cached_survey,
-    check_even,
-    files_of,
-    loaded,
-    rounded_outwards,
-    survey,
-)
+from bedchain.trajectory.frame_files import FrameSettings, files_of
+from bedchain.trajectory.survey import cached_survey, check_even, rounded_outwards, survey
 from made.forms import BOX, STEP_S, VTK_BOX, moving, text_frame, write_form
 
 SERIES = moving()
@@ -41,14 +34,6 @@ def test_frames_are_in_the_order_of_their_steps_not_of_their_names(tmp_path):
     assert [entry.time_s for entry in frames.entries] == [0, 0.01, 0.02, 0.03, 0.04, 0.05]
     assert frames.interval_s == 0.01 and frames.from_header and np.array(frames.box_m) == pytest.approx(BOX)
     assert (frames.number, frames.diameters_m) == (20, [1e-3] * 3)
-
-
-def test_files_are_in_the_order_of_the_numbers_in_their_names(tmp_path):
-    for name in ("f_10", "f_9", "f_100"):
-        (tmp_path / name).touch()
-    assert [file.name for file in files_of("f_*", tmp_path)] == ["f_9", "f_10", "f_100"]
-    with pytest.raises(UserError, match=r"no file is named .*g_\*; the folder .* exists"):
-        files_of("g_*", tmp_path)
 
 
 def test_boxes_are_passed_over_and_repeated_steps_joined(tmp_path):
@@ -124,15 +109,6 @@ def test_files_without_any_frame_are_refused(tmp_path):
     (tmp_path / "box_0.vtk").write_bytes(VTK_BOX)
     with pytest.raises(UserError, match="1 files, and no frame with particles in them"):
         frames_in(tmp_path)
-
-
-def test_frames_can_be_read_in_any_order(tmp_path):
-    pattern = write_form("many_text", tmp_path, SERIES)
-    chosen = settings(pattern)
-    entries = survey(chosen, tmp_path).entries
-    mixed = [entries[at] for at in (3, 1, 2, 5)]
-    first = [values["x"][0] for _, values in loaded(mixed, chosen)]
-    assert first == pytest.approx([SERIES.positions[at, 0, 0] for at in (3, 1, 2, 5)], rel=1e-8)
 
 
 def test_a_survey_is_kept_until_a_file_or_a_setting_changes(tmp_path, monkeypatch):

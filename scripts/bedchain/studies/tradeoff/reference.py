@@ -8,9 +8,11 @@ import numpy as np
 import pandas as pd
 from numpy.typing import NDArray
 
+from bedchain.case.cell_checks import not_flat
 from bedchain.case.schema import Case
 from bedchain.comparison.curves import curves_of
 from bedchain.dem.series import read_series
+from bedchain.errors import DataError
 from bedchain.measures.batch import share_by_cell
 from bedchain.measures.dispersion import dispersion_by_height
 from bedchain.measures.mixing import Splits
@@ -40,7 +42,10 @@ def compared(run: Realisation, case: Case) -> slice:
 
 def own_grid(run: Realisation, case: Case) -> Grid:
     """The case's cells on the bed of a run."""
-    return Grid(run.width_m, run.height_m, case["cells"]["columns"], case["cells"]["rows"])
+    cells = case["cells"]
+    if reason := not_flat(cells.get("form", "boxes"), cells.get("layers", 1), case.get("outside", "refuse")):
+        raise DataError(f"{reason}: take a case of its own for the trade-off")
+    return Grid(run.width_m, run.height_m, cells["columns"], cells["rows"])
 
 
 def window_curves(run: Realisation, case: Case) -> Array:

@@ -20,7 +20,8 @@ from bedchain.studies.tradeoff.bed_variants import REALISATION, BedVariant
 from bedchain.studies.tradeoff.observables import BedObservables, Reference, bed_errors
 from bedchain.studies.tradeoff.reference import window_curves, window_densities, window_scalars
 from bedchain.trajectory.realisations import Realisation, open_realisation
-from bedchain.trajectory.store import read_manifest, write_trajectory
+from bedchain.trajectory.store import read_manifest
+from bedchain.trajectory.stored_dumps import write_trajectory
 
 LOG = logging.getLogger(__name__)
 

@@ -1,10 +1,13 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """What is measured of a realisation: mixing time and granular temperature."""
 
+from types import SimpleNamespace
+
 import numpy as np
 import pytest
 
-from bedchain.studies.tradeoff.reference import granular_temperature, mixing_time
+from bedchain.errors import DataError
+from bedchain.studies.tradeoff.reference import granular_temperature, mixing_time, own_grid
 
 
 def test_mixing_time_of_an_exponential_is_its_time_constant():
@@ -13,6 +16,13 @@ def test_mixing_time_of_an_exponential_is_its_time_constant():
     one, other = 0.6 + 0.4 * apart, 0.4 + 0.6 * apart
     assert mixing_time(one, other, 0.025) == pytest.approx(0.4, rel=1e-3)
     assert np.isnan(mixing_time(one[:10], other[:10], 0.025))
+
+
+def test_cells_that_are_no_flat_boxes_are_refused():
+    run, cells = SimpleNamespace(width_m=0.1, height_m=0.2), {"columns": 4, "rows": 5}
+    assert own_grid(run, {"cells": cells | {"form": "boxes", "layers": 1}}).n_cells == 20
+    with pytest.raises(DataError, match="flat boxes only, and the cells are sectors"):
+        own_grid(run, {"cells": cells | {"form": "sectors"}})
 
 
 def test_granular_temperature_is_that_of_a_loop_and_of_the_theory():

@@ -8,7 +8,7 @@ import pytest
 from bedchain.errors import DataError
 from bedchain.trajectory.forms.files import FormSettings, frames_of, step_in_name
 from bedchain.trajectory.forms.raw import CutOffError
-from bedchain.trajectory.survey import files_of
+from bedchain.trajectory.frame_files import files_of
 from made.forms import COLUMNS, FORMS, STEP_S, VTK_BOX, moving, text_frame, write_form
 
 NINE_DIGITS, SINGLE = 1e-8, 1e-6  # of a text of nine digits, and of VTK's points
