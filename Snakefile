@@ -82,7 +82,7 @@ PLOTS = [
     *(["fig_difference"] if {*MODEL_FIGURES} <= {*MODELS} and not TRACK else []),
     "fig_chapman_kolmogorov",
     "fig_timescales",
-    *([] if TRACK else ["fig_choice"]),
+    *([] if TRACK or OPEN else ["fig_choice"]),
     "fig_modes",
     "fig_stationarity",
     *(["fig_residence"] if OPEN else []),
@@ -94,7 +94,8 @@ PLOTS = [
 # what people look at, on one page: of both beds where both are made
 REPORT = "results/report.html" if WITH_PAPER else f"{RESULTS}/report.html"
 TABLES = [
-    *([] if TRACK else ["mixing.csv", "metrics.csv", "choice.csv"]),
+    *([] if TRACK else ["mixing.csv", "metrics.csv"]),
+    *([] if TRACK or OPEN else ["choice.csv"]),
     "diagnostics.csv",
     "stationarity.csv",
     "timing.csv",

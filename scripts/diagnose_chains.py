@@ -35,7 +35,7 @@ from bedchain.measures.batch import total_variation
 from bedchain.measures.mixing import Splits, marked_histogram, sides
 from bedchain.stage import LOG, run_stage
 from bedchain.trajectory.frames import Frames, Window, lag_frames
-from bedchain.trajectory.grid import Grid
+from bedchain.trajectory.grid import OUTSIDE, Grid
 from bedchain.trajectory.realisations import open_bed
 from bedchain.trajectory.store import BedFiles
 from bedchain.uncertainty.bands import Array, memory, shortness
@@ -161,7 +161,7 @@ def index_rows(
     ----------
     chains : dict of str to Chain
     start : Frames
-        Up to the start of the comparison.
+        Up to the start of the comparison, of the particles that are there then.
     window : Frames
         The comparison window.
     splits : Splits
@@ -174,7 +174,8 @@ def index_rows(
     -------
     list of dict
     """
-    marked = sides(np.asarray(start.x_m[-1]), np.asarray(start.z_m[-1]), *splits)
+    there = np.asarray(window.cells[0]) != OUTSIDE
+    marked = sides(np.asarray(window.x_m[0]), np.asarray(window.z_m[0]), *splits) & there
     first = next(iter(chains.values()))
     n_steps = (len(window.times_s) - 1) // lag
     steps = np.unique(np.linspace(0, n_steps, min(n_steps, LACEY_MOMENTS) + 1).astype(int))
@@ -182,7 +183,7 @@ def index_rows(
     seen = [marked_histogram(window.cells[step * lag], marked, first.grid.n_cells) for step in steps]
     rows = lacey_rows("dem", times, np.array(seen))
     for name, chain in chains.items():
-        rows += lacey_rows(name, times, chain.densities(start, marked, list(steps), next(random)))
+        rows += lacey_rows(name, times, chain.densities(start, marked[:, there], list(steps), next(random)))
     return rows
 
 

@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Somebody else's frames as the trajectory of a case, and what their motion says of them."""
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any, NamedTuple
 
@@ -10,13 +10,22 @@ import pandas as pd
 
 from bedchain.files import write_csv
 from bedchain.stage import LOG, run_stage
+from bedchain.trajectory.bed_frames import Placement
 from bedchain.trajectory.frames_of_case import placement_of, settings_of
 from bedchain.trajectory.imported import Targets, write_imported
 from bedchain.trajectory.store import open_trajectory
-from bedchain.trajectory.survey import cached_survey, check_even
+from bedchain.trajectory.survey import Survey, cached_survey, check_even
 from bedchain.trajectory.track import resample
 
 CHUNK_FRAMES = 50
+PERIODIC = (
+    "the box is periodic along %s, each %g m: who leaves at one side comes in at the other, which cells see "
+    "as a move; distances between frames, such as in choice.csv and the dispersion, do not know of it"
+)
+CUT_PERIOD = (
+    "the box is periodic along %s, each %g m, and the bed is not as long: who crosses its side jumps; give "
+    "the bed the size of the box"
+)
 
 
 class Box(NamedTuple):
@@ -69,7 +78,8 @@ def import_frames(
     frames = cached_survey(settings, folder, targets.metadata.with_name("frames.json"), whole_box=False)
     if "every_s" not in section:
         check_even(frames)
-    motion = write_imported(frames, settings, placement_of(section, *box), targets, progress)
+    placement = in_periods(placement_of(section, *box), frames)
+    motion = write_imported(frames, settings, placement, targets, progress)
     if "every_s" in section:
         every_s = section["every_s"]
         LOG.info(resample(targets.trajectory, targets.metadata, every_s, section.get("reach_s", every_s)))
@@ -85,6 +95,19 @@ def import_frames(
         *store.shape[::2],
         frames.start_s,
     )
+
+
+def in_periods(placement: Placement, frames: Survey) -> Placement:
+    """The placement with the lengths after which the frames repeat, and a warning of what that means."""
+    lengths = frames.periods_m(placement.axes)
+    sizes = (placement.width_m, lengths[1], placement.height_m)
+    periods = [
+        length if np.isclose(length, size) else 0.0 for length, size in zip(lengths, sizes, strict=True)
+    ]
+    for name, length, period in zip(placement.axes, lengths, periods, strict=True):
+        if length:
+            LOG.warning("warning: " + (PERIODIC if period else CUT_PERIOD), name, length)
+    return replace(placement, periods_m=(periods[0], periods[1], periods[2]))
 
 
 def bed_series(store: np.ndarray, times_s: np.ndarray) -> pd.DataFrame:

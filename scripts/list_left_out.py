@@ -58,6 +58,8 @@ def list_left_out(bed: BedFiles, left_out: Path, cells: Cells, imported: bool, t
         rows.append(NO_VELOCITIES)
     if track:
         rows.append(OF_TRACERS)
+    if cells.outside == "exit":
+        rows.append(("choice.csv, fig_choice", "the rule follows particles that stay in the bed"))
     if reason := not_flat(cells.form, cells.layers, cells.outside):
         rows.append((OF_FLAT_CELLS, reason))
     table = pd.DataFrame(rows, columns=["product", "reason"])

@@ -11,7 +11,7 @@ from bedchain.trajectory.dumps import read_dump
 
 DECKS = Path(__file__).with_name("decks")
 COLUMNS = ["id", "type", "radius", "x", "y", "z", "vx", "vy", "vz"]
-LIMIT_S = 120  # some seconds on an idle core
+LIMIT_S = 600  # some seconds on an idle core
 
 
 class Scene(NamedTuple):

@@ -1,14 +1,21 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""A three-dimensional drum of LIGGGHTS on sectors and on boxes: both chains mix alike, within their bands."""
+"""A drum of LIGGGHTS: its VTK files are its text frames; sectors and boxes mix alike, within their bands."""
+
+from functools import partial
 
 import numpy as np
 import pytest
 
+from bedchain.case.load import load_case
 from bedchain.chains import static
 from bedchain.chains.counting import count_moves
-from bedchain.trajectory.frames import Frames
+from bedchain.trajectory.frames import Frames, Window
+from bedchain.trajectory.frames_of_case import measured_sections
 from bedchain.trajectory.grid import Grid
+from bedchain.trajectory.imported import Targets
+from bedchain.trajectory.realisations import open_realisation
 from bedchain.uncertainty.bands import block_band, kept_blocks, kept_steps
+from import_frames import Box, Tables, import_frames
 from made.decks import run_deck
 
 INTERVAL_S, DIAMETER, DEPTH = 0.04, 0.06, 0.012
@@ -21,10 +28,45 @@ CUT = 0.08  # seen: 0.05 at most
 
 
 @pytest.fixture(scope="module")
-def drum(tmp_path_factory):
+def made(tmp_path_factory):
+    """Folder with the files of the drum, and its text frames."""
+    folder = tmp_path_factory.mktemp("drum")
+    return folder, run_deck("in.drum", folder, across="y")
+
+
+@pytest.fixture(scope="module")
+def drum(made):
     """Positions x, z, y of all frames after one revolution [m]."""
-    values = run_deck("in.drum", tmp_path_factory.mktemp("drum"), across="y").values[STARTED:]
+    values = made[1].values[STARTED:]
     return values[:, 0], values[:, 1], values[:, 4]
+
+
+def test_a_short_case_takes_the_drum_from_its_vtk_files_to_mixing_curves(made, tmp_path):
+    folder, scene = made
+    (file := tmp_path / "case.yaml").write_text(f"""
+title: drum
+frames: {{files: "{folder}/drum_*.vtk", step_s: 1.25e-4, across: y}}
+bed: {{width_m: {DIAMETER}, height_m: {DIAMETER}, thickness_m: {DEPTH}}}
+cells: {{columns: 6, rows: 6}}
+learning: {{start_s: 0.4, end_s: 4}}
+comparison: {{start_s: 4, end_s: 7.8}}
+mixing: {{split_z_m: 0.015}}
+""")
+    case = load_case(file, measure=partial(measured_sections, cache=tmp_path / "frames.json"))
+    section = case["frames"] | {"origin_m": [0.0, 0.0, 0.0]}
+    targets = Targets(*(tmp_path / name for name in ("trajectory.npy", "trajectory.json", "particles.npz")))
+    tables = Tables(tmp_path / "bed_series.csv", tmp_path / "motion.csv")
+    import_frames(section, tmp_path, Box(DIAMETER, DIAMETER, "refuse"), targets, tables, progress=False)
+    run = open_realisation("the run", targets.trajectory, targets.metadata)
+    text = scene.values[4::5]  # of the same steps
+    assert run.values.shape[::2] == (40, text.shape[2]) and run.interval_s == 0.2
+    # both forms have six digits, of velocities that are differences of larger ones too
+    np.testing.assert_allclose(run.values[:, :2], text[:, :2], atol=2e-7)
+    np.testing.assert_allclose(run.values[:, 2:4], text[:, 2:4], rtol=2e-5, atol=1e-6)
+    learned = run.frames(BOXES, Window(**case["learning"]).frames(run.times_s))
+    start = run.leading_to(BOXES, 18, 1)
+    curves = static.learn(learned, BOXES).mixing(start, DIAMETER / 2, 0.015, 19)
+    assert (curves[0] == 1).all() and (curves[-1, :2] < 0.7).all()
 
 
 def mixing_with_bands(grid, drum):

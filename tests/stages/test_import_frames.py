@@ -9,7 +9,7 @@ import pandas as pd
 from bedchain.dem.series import read_series
 from bedchain.trajectory.imported import Targets
 from import_frames import Box, Tables, import_frames
-from made.forms import STEP_S, moving, write_form
+from made.forms import STEP_S, moving, text_frame, write_form
 
 SECTION = {
     "files": "*.dump", "step_s": STEP_S, "length_unit_m": 1.0, "time_unit_s": 1.0, "across": "x", "up": "z",
@@ -28,3 +28,17 @@ def test_frames_are_stored_with_their_series(tmp_path, caplog):
     np.testing.assert_allclose(heights, series.positions[:, :, 2].mean(axis=1) + 0.02, rtol=1e-5)
     assert len(pd.read_csv(tables.motion)) == 5
     assert "6 frames of 20 particles" in caplog.text
+
+
+def test_periodic_sides_are_named_and_particles_put_back(tmp_path, caplog):
+    series = moving()
+    series.positions[2, 4, 0] += 0.1  # of the box, which is as wide as the bed
+    for frame in range(6):
+        (tmp_path / f"f{frame}.dump").write_text(text_frame(series, frame, flags="pp ff pp"))
+    targets = Targets(*(tmp_path / name for name in ("trajectory.npy", "trajectory.json", "particles.npz")))
+    tables = Tables(*(tmp_path / f"{name}.csv" for name in ("bed_series", "motion")))
+    import_frames(SECTION, tmp_path, Box(0.1, 0.25, "refuse"), targets, tables, progress=False)
+    place = np.load(targets.trajectory)[2, 0, np.argsort(np.argsort(series.ids))[4]]
+    assert place == np.float32(series.positions[2, 4, 0] - 0.1 + 0.05)
+    assert "periodic along x, each 0.1 m: who leaves at one side" in caplog.text
+    assert "periodic along z, each 0.2 m, and the bed is not as long" in caplog.text

@@ -27,6 +27,7 @@ def test_each_product_that_is_missing_has_its_reason(bed, tmp_path, cells, reaso
     assert ("no gas in the frames" in set(reasons)) == imported
     assert any("no groups that mix" in reason for reason in reasons) == imported
     assert (OF_STUDIES in reasons) == (reason is not None)
+    assert ("choice.csv, fig_choice" in reasons) == (cells.outside == "exit")
     chains = CaseChains(4, 5, 0.1, "pooled", layers=cells.layers, form=cells.form, outside=cells.outside)
     if reason is None:
         assert chains.flat_grid(0.1, 0.2).n_cells == 20

@@ -167,7 +167,7 @@ def marked_histogram(
     Parameters
     ----------
     states : (n_particles,) int array
-        State (or cell) of each particle.
+        State (or cell) of each particle; negative for one that is not there, which is not counted.
     marked : (n_groups, n_particles) bool array
         Groups.
     n_states : int
@@ -178,7 +178,9 @@ def marked_histogram(
     (n_groups, n_states) int64 array
         Counts [1].
     """
-    return np.stack([np.bincount(states[group], minlength=n_states) for group in marked]).astype(np.int64)
+    there = states >= 0
+    counts = [np.bincount(states[group & there], minlength=n_states) for group in marked]
+    return np.stack(counts).astype(np.int64)
 
 
 def lacey_index(marked: NDArray[Any], total: NDArray[Any]) -> float:

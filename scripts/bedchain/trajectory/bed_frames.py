@@ -31,6 +31,9 @@ class Placement:
     without_ids : str
         ``refuse``; ``order``: the order in the file is the particle; ``one_tracer``: all rows are of one
         tracer, and those of one time become their mean.
+    periods_m : tuple of float
+        Length along the bed's x, y and z after which the frames repeat [m], 0 where they do not: a particle
+        beyond such a side is put back at the other one.
     """
 
     across: str
@@ -41,6 +44,7 @@ class Placement:
     outside: str = "refuse"
     keep_depth: bool = False
     without_ids: str = "refuse"
+    periods_m: tuple[float, float, float] = (0.0, 0.0, 0.0)
 
     @property
     def axes(self) -> tuple[str, str, str]:
@@ -113,6 +117,8 @@ def bed_frame(values: Columns, settings: FrameSettings, placement: Placement, pl
         np.multiply(column, factor, out=rows[row])
         if origin is not None and placement.origin_m[origin]:
             rows[row] -= placement.origin_m[origin]
+        if origin is not None and placement.periods_m[origin]:
+            rows[row] %= placement.periods_m[origin]
         _check_finite(rows[row], ids, prefix + axis[-1], place)
     kind = values.get("type")
     radius = radii(values) * length if {"radius", "diameter"} & values.keys() else None

@@ -67,7 +67,7 @@ def write_imported(
     n_rows = len(STORED) + placement.keep_depth
     check_disk(targets.trajectory, 4 * n_rows * len(entries) * frames.number)
     keeper = ParticleSlots(placement)
-    motion = MotionCheck()
+    motion = MotionCheck(placement.periods_m[::2])
     with ExitStack() as stack:
         raw = stack.enter_context(atomic_file(targets.trajectory.with_suffix(".part")))
         stream = stack.enter_context(raw.open("w+b"))

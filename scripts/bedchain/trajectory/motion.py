@@ -37,10 +37,18 @@ class Interval(NamedTuple):
 
 
 class MotionCheck:
-    """Displacements beside velocities of frames that are added in order of time."""
+    """Displacements beside velocities of frames that are added in order of time.
 
-    def __init__(self) -> None:
+    Parameters
+    ----------
+    periods_m : tuple of float
+        Lengths along x and z after which the frames repeat [m], 0 where they do not: displacements are the
+        short way.
+    """
+
+    def __init__(self, periods_m: tuple[float, float] = (0.0, 0.0)) -> None:
         self.intervals: list[Interval] = []
+        self.periods_m = periods_m
         self._last: tuple[Entry, np.ndarray, np.ndarray] | None = None
 
     def add(self, entry: Entry, ids: np.ndarray, rows: np.ndarray) -> None:
@@ -55,7 +63,7 @@ class MotionCheck:
             x, z [m], vx, vz [m/s], NaN where there are no velocities.
         """
         if self._last is not None:
-            self.intervals.append(_interval(*self._last, entry, ids, rows))
+            self.intervals.append(_interval(*self._last, entry, ids, rows, self.periods_m))
         self._last = entry, ids, rows
 
     def table(self) -> pd.DataFrame:
@@ -128,11 +136,15 @@ def _interval(
     after: Entry,
     next_ids: np.ndarray,
     next_rows: np.ndarray,
+    periods_m: tuple[float, float],
 ) -> Interval:
     if not np.array_equal(ids, next_ids):
         _, here, there = np.intersect1d(ids, next_ids, assume_unique=True, return_indices=True)
         rows, next_rows = rows[:, here], next_rows[:, there]
     moved = next_rows[:2] - rows[:2]
+    for axis, period in zip(moved, periods_m, strict=True):
+        if period:
+            axis -= period * np.round(axis / period)
     expected = (next_rows[2:4] + rows[2:4]) / 2 * (after.time_s - before.time_s)
     product, square, moved_square = (expected * moved).sum(), (expected**2).sum(), (moved**2).sum()
     slope = product / square if square > 0 else np.nan

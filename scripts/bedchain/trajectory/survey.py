@@ -61,6 +61,11 @@ class Survey(NamedTuple):
     number: int
     notes: list[str]
 
+    def periods_m(self, axes: Sequence[str]) -> list[float]:
+        """Lengths of the box along axes of the files, 0 where it is not periodic [m]."""
+        places = [POSITION.index(axis[-1]) for axis in axes]
+        return [(self.box_m[at][1] - self.box_m[at][0]) * self.periodic[at] for at in places]
+
     @property
     def interval_s(self) -> float:
         """Time between frames [s]."""

@@ -78,6 +78,11 @@ def test_histogram_counts_each_group():
     assert found.tolist() == [[0, 0, 2, 0], [1, 0, 1, 0]] and found.dtype == np.int64
 
 
+def test_histogram_leaves_out_who_is_not_there():
+    counts = mixing.marked_histogram(np.array([2, -1, 0]), np.ones((1, 3), bool), 4)
+    assert counts.tolist() == [[1, 0, 1, 0]]
+
+
 def test_lacey_index_of_apart_mixed_and_drawn():
     assert mixing.lacey_index(np.array([10, 0, 0]), np.array([10, 10, 0])) == pytest.approx(0.0)
     # Perfectly even is above 1: dice would leave a spread of c (1 - c) / n.

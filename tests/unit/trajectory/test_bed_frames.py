@@ -27,6 +27,12 @@ def test_particles_are_in_the_order_of_their_ids():
         bed_frame({"x": VALUES["x"]}, FILES, PLACE, "f")
 
 
+def test_a_particle_beyond_a_periodic_side_is_put_back_at_the_other_one():
+    placement = replace(PLACE, periods_m=(0.25, 0.0, 0.0))
+    frame = bed_frame(VALUES | {"id": np.array([1, 2])}, FILES, placement, "f")
+    assert frame.rows[:2] == pytest.approx(np.array([[0.1, 0.05], [0.5, 0.7]]))
+
+
 def test_without_ids_a_frame_is_refused_or_in_order_or_of_one_tracer():
     with pytest.raises(UserError, match="no column of ids, .* say frames.without_ids: order"):
         bed_frame(VALUES, FILES, PLACE, "f")

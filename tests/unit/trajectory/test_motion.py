@@ -21,8 +21,10 @@ def series(n_frames: int = 12, seed: int = 3) -> np.ndarray:
     return np.stack((x, z, speed * np.cos(angle), speed * np.sin(angle)), axis=1)
 
 
-def warnings(frames: np.ndarray, interval_s: float = INTERVAL_S) -> list[str]:
-    check = MotionCheck()
+def warnings(
+    frames: np.ndarray, interval_s: float = INTERVAL_S, periods_m: tuple[float, float] = (0.0, 0.0)
+) -> list[str]:
+    check = MotionCheck(periods_m)
     for at, rows in enumerate(frames):
         check.add(Entry("run.dump", at, 100 * at, at * interval_s, IDS.size), IDS, rows)
     assert len(check.table()) == len(frames) - 1
@@ -31,6 +33,12 @@ def warnings(frames: np.ndarray, interval_s: float = INTERVAL_S) -> list[str]:
 
 def test_a_sound_series_has_no_warnings():
     assert warnings(series()) == []
+
+
+def test_who_crosses_a_periodic_side_has_moved_the_short_way():
+    frames = series()
+    frames[:, 0] %= 0.004
+    assert warnings(frames, periods_m=(0.004, 0.0)) == [] != warnings(frames)
 
 
 @pytest.mark.parametrize("factor", [10, 0.1, 4])
