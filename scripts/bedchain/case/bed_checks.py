@@ -13,6 +13,10 @@ RAYLEIGH_SHARE_MAX = 0.2  # the usual limit for Hertz contacts; time.allow_unsta
 FILLED_HEIGHT_MAX = 0.7
 # of the diameter: the lowest layer of the paper's bed has 0.06; where it is 0.095 a bed sags by 16 %
 OVERLAP_AT_REST_MAX = 0.09
+CARRYING_KEYS = (
+    "contact.poisson_ratio_1", "particles.density_kg_m3", "particles.diameter_m", "particles.number",
+    "bed.width_m", "bed.thickness_m",
+)  # fmt: skip
 BED_KEYS = ("bed.width_m", "bed.height_m", "bed.thickness_m", "bed.layers")
 
 
@@ -80,10 +84,7 @@ def step_is_stable(
         yield "time.dem_step_s", wrong, remedy
 
 
-@reads(
-    "contact.young_modulus_Pa", "contact.poisson_ratio_1", "particles.density_kg_m3", "particles.diameter_m",
-    "particles.number", "bed.width_m", "bed.thickness_m",
-)  # fmt: skip
+@reads("contact.young_modulus_Pa", *CARRYING_KEYS)
 def particles_carry_the_bed(
     young: float, poisson: float, density: float, diameter: float, number: int, width: float, depth: float
 ) -> Iterator[Finding]:

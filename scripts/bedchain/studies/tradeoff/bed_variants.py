@@ -7,12 +7,14 @@ from dataclasses import dataclass
 from fractions import Fraction
 from typing import Any
 
+from bedchain.case.bed_checks import CARRYING_KEYS, particles_carry_the_bed
 from bedchain.case.schema import Case, case_value, load_schema
 from bedchain.case.variants import Variant
 from bedchain.errors import UserError, report_user_errors
 from bedchain.physics.whole_numbers import is_prime
 
-# Young's modulus over the case's; the step goes with its root, so that its share of the Rayleigh time stays
+# Young's modulus over the case's; the step goes with its root, so that its share of the Rayleigh time stays.
+# Particles too soft to carry the bed are left out.
 STIFFNESSES = (0.1, 0.4, 4.0, 10.0)
 STEPS = (0.5, 2.5)
 GAS_STEPS = (0.2, 0.5, 2.0)
@@ -144,6 +146,8 @@ def _particles(case: Case) -> Iterator[tuple[str, str, dict[str, Any]]]:
     step, gas_step = case["time"]["dem_step_s"], _coupling(case)
     for factor in STIFFNESSES:
         young = case["contact"]["young_modulus_Pa"] * factor
+        if any(particles_carry_the_bed(young, *_weight_of(case))):
+            continue
         shorter = dividing_step(gas_step, step / math.sqrt(factor))
         changes = {"contact.young_modulus_Pa": young, "time.dem_step_s": shorter}
         yield "stiffness and step", f"stiffness_{factor:g}", changes
@@ -187,6 +191,11 @@ def _gas(case: Case) -> Iterator[tuple[str, str, dict[str, Any]]]:
     yield "pair", "gas_cell_0.5_same_kernel", fine | {"gas.smoothing_diameters_1": same_kernel}
     shorter = _with_gas_step(case, dividing_step(time["frame_interval_s"], time["gas_step_s"] * 0.5))
     yield "pair", "gas_cell_0.5_gas_step_0.5", fine | shorter
+
+
+def _weight_of(case: Case) -> list[float]:
+    """Values of a case that `particles_carry_the_bed` takes after Young's modulus."""
+    return [case_value(case, key) for key in CARRYING_KEYS]
 
 
 def _without(primes: tuple[int, ...], number: int) -> int:
