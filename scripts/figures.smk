@@ -152,6 +152,7 @@ if WORDS.get("studies", True):
                 ),
             },
         },
+        "plot_ladder": {"name": "fig_ladder", "input": {"ladder": f"{RESULTS}/ladder.csv"}},
         "plot_best_mixing": {
             "name": "fig5_best",
             "input": {"mixing": f"{RESULTS}/scores_mixing.csv", "selection": f"{RESULTS}/selection.csv"},

@@ -5,8 +5,10 @@
 #   estimate  what a case will cost, before it runs      stability solvers and chains at their extremes
 #   tradeoff  what accuracy costs, of chains and of simulated beds; the presets
 #   bands     how often the 95 % bands hold the truth
+#   ladder    every model on one bed, cost against error
 import shlex
 
+from bedchain.case.two_fluid import two_fluid_grids
 from bedchain.studies.tradeoff.bed_variants import variants_or_exit
 from bedchain.workflow import dated, peers_or_exit
 
@@ -194,6 +196,68 @@ rule score_models:
         comparison=pick(CASE, "comparison.start_s", "comparison.end_s"),
     script:
         "score_models.py"
+
+
+# Every model on one bed, cost against error: snakemake --cores 2 ladder. Two-fluid runs come out of the case's archive
+# (cases/<case>/two_fluid) or are made, on two grids, where the bed can be one of two fluids.
+ARCHIVED_TWO_FLUID = source_files(f"cases/{NAME}", "two_fluid/*/record.json")
+TWO_FLUID_MM = [] if ARCHIVED_TWO_FLUID else two_fluid_grids(CASE)
+
+
+rule ladder:
+    input:
+        f"{RESULTS}/ladder.csv",
+        expand(f"{FIGURES}/fig_ladder{{form}}", form=FORMS.values()),
+
+
+# Its run is kept in segments: one that was stopped goes on.
+rule run_two_fluid:
+    input:
+        source_files("openfoam_case", "two_fluid/*/*"),
+        "openfoam_case/system/blockMeshDict",
+        case=ancient(f"cases/{NAME}/case.yaml"),
+    output:
+        record=f"{BED}/two_fluid/{{mm}}mm/record.json",
+    log:
+        f"{LOGS}/run_two_fluid_{{mm}}mm.log",
+    benchmark:
+        f"{BENCHMARKS}/run_two_fluid_{{mm}}mm.tsv"
+    wildcard_constraints:
+        mm=r"[\d.]+",
+    conda:
+        "../envs/python.yaml"
+    params:
+        folder=subpath(output.record, parent=True),
+        cell_m=lambda wildcards: float(wildcards.mm) / 1000,
+    shell:
+        "python scripts/run_two_fluid.py {input.case} {params.folder} --cell {params.cell_m} 2>&1 | tee {log} >&2"
+
+
+# Alone on the machine, since it measures times.
+rule study_ladder:
+    input:
+        code("study_ladder"),
+        **TRAJECTORY,
+        **SETTLED,
+        cells=f"{RESULTS}/cells.npz",
+        dem=RUN["dem"],
+        bed_series=RUN["bed_series"],
+        mixing=f"{RESULTS}/mixing.csv",
+        choice=CHOICE,
+        two_fluid=ARCHIVED_TWO_FLUID + expand(f"{BED}/two_fluid/{{mm}}mm/record.json", mm=TWO_FLUID_MM),
+    output:
+        ladder=f"{RESULTS}/ladder.csv",
+    log:
+        f"{LOGS}/study_ladder.log",
+    benchmark:
+        f"{BENCHMARKS}/study_ladder.tsv"
+    conda:
+        "../envs/python.yaml"
+    threads: workflow.cores or 1
+    params:
+        case=CASE,
+    script:
+        "study_ladder.py"
 
 
 # What a case will cost, before it runs; after a run also what it did cost: snakemake --cores 2 estimate

@@ -164,3 +164,14 @@ def by_height(
     for name, values in means.items():
         rows[name] = values["mean"].where(values["count"] >= SMALLEST_SAMPLE).to_numpy()
     return pd.DataFrame(rows | {"frequency_Hz": passed.sum(axis=1) / duration_s})
+
+
+def middle_of_bed(table: pd.DataFrame, risen: pd.DataFrame, height_m: float) -> dict[str, float]:
+    """Mean diameter and rise velocity of bubbles between 0.4 and 0.6 of a bed's height; NaN without any."""
+    return {
+        name: float(data.loc[data["z_m"].between(0.4 * height_m, 0.6 * height_m), column].mean())
+        for name, data, column in (
+            ("bubble_diameter_m", table, "diameter_m"),
+            ("bubble_velocity_m_s", risen, "velocity_m_s"),
+        )
+    }

@@ -1,0 +1,106 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""The simulated bed as the truth of the ladder, with floors from parts of its run and from its repeats."""
+
+from pathlib import Path
+
+import numpy as np
+import pandas as pd
+from numpy.typing import NDArray
+
+from bedchain.case.schema import Case
+from bedchain.measures.bubbles import bubble_table, middle_of_bed, rises, voidage_map
+from bedchain.measures.mixing import GROUPS
+from bedchain.physics.bubbling_bed import MINIMUM_VOIDAGE
+from bedchain.studies.ladder.answers import Answer, Array, Truth, Values, distance, ladder_rows, of_density
+from bedchain.trajectory.grid import Grid
+from bedchain.trajectory.realisations import Realisation
+
+PARTS = 4  # of learning and comparison together: their spread gives the floors of means over a window
+VOID = (1 + MINIMUM_VOIDAGE) / 2
+FASTEST = 3.0  # bubble over sqrt(g W)
+
+
+def values_of(run: Realisation, frames: slice, series: pd.DataFrame, grid: Grid, case: Case) -> Values:
+    """Means of the simulated bed over frames, as of `answers.Answer`, without mixing."""
+    positions, bed = run.values[frames], case["bed"]
+    counts = np.zeros(grid.n_cells)
+    for frame in positions:
+        counts += np.bincount(grid.cell_of(frame[0], frame[1]), minlength=grid.n_cells)
+    values = dict(of_density(counts / counts.sum(), grid, case))
+    values["particle_height"] = float(np.mean(positions[:, 1]))
+    start_s, end_s = run.times_s[frames][[0, -1]]
+    within = series[series["time_s"].between(start_s, end_s)]
+    values["pressure_drop"] = float(within["pressure_drop_Pa"].mean())
+    cell_m = case["gas"]["cell_size_m"]
+    shape = round(bed["height_m"] / cell_m), round(bed["width_m"] / cell_m)
+    solids = np.pi / 6 * case["particles"]["diameter_m"] ** 3 / bed["thickness_m"]
+    size = bed["height_m"], bed["width_m"]
+    maps = (voidage_map(frame[0], frame[1], shape, size, solids) for frame in positions)
+    table = bubble_table(maps, cell_m, VOID)
+    risen = rises(table, run.interval_s, FASTEST * np.sqrt(9.81 * bed["width_m"]))
+    bubbles = middle_of_bed(table, risen, 2 * float(values["particle_height"]))
+    return values | {name.rsplit("_m", 1)[0]: value for name, value in bubbles.items()}
+
+
+def truth_of(
+    run: Realisation, spans: tuple[slice, slice], series: pd.DataFrame, curves: Array, grid: Grid, case: Case
+) -> Truth:
+    """The simulated bed over its comparison window.
+
+    Parameters
+    ----------
+    run : Realisation
+    spans : (slice, slice)
+        Frames of learning and comparison.
+    series : DataFrame
+        ``bed_series.csv``.
+    curves : (n_realisations, n_frames, 4) array
+        Mixing curves of the run and its repeats, groups in the order of `GROUPS` [1].
+    grid : Grid
+        Cells of the case.
+    case : dict
+
+    Returns
+    -------
+    Truth
+        Mixing curves are the mean of the realisations, their floor what one differs by from it. The other
+        floors: what a mean over a window differs by, from the spread of `PARTS` parts of both windows.
+    """
+    values = dict(values_of(run, spans[1], series, grid, case))
+    edges = np.linspace(spans[0].start, spans[1].stop, PARTS + 1).astype(int)
+    parts = [
+        values_of(run, slice(start, stop), series, grid, case)
+        for start, stop in zip(edges[:-1], edges[1:], strict=True)
+    ]
+    floors = {}
+    for name in values:
+        mean = np.mean([np.asarray(part[name]) for part in parts], axis=0)
+        spread = [distance(name, part[name], mean) for part in parts]
+        # a window is half of the parts: of its mean the variance is that of a part over PARTS / 2
+        floors[name] = float(np.sqrt(np.sum(np.square(spread)) / (PARTS - 1) / (PARTS / 2)))
+    for direction in ("radial", "axial"):
+        which = [at for at, (of, _) in enumerate(GROUPS) if of == direction]
+        mean = curves[..., which].mean(axis=0)
+        values[f"mixing_{direction}"] = mean
+        if (count := len(curves)) > 1:
+            off = (curves[..., which] - mean)[:, 1:]
+            floors[f"mixing_{direction}"] = float(np.sqrt(np.mean(off**2) * count / (count - 1)))
+    return Truth(values, floors, run.interval_s)
+
+
+def dem_rows(truth: Truth, cost_s: float) -> pd.DataFrame:
+    """Rows of the simulation itself: another realisation has an error of a floor in each quantity."""
+    values = {name: true for name, true in truth.values.items() if name in truth.floors}
+    rows = ladder_rows([Answer("bedFoam", values, cost_s, lag_s=truth.interval_s, paths=True)], truth)
+    of_floor = rows["noise_floor_1"].notna()
+    rows.loc[of_floor, "error_1"], rows.loc[of_floor, "error_floors"] = rows["noise_floor_1"], 1.0
+    return rows
+
+
+def read_curves(mixing: Path) -> NDArray[np.float64]:
+    """Mixing curves of all realisations in ``mixing.csv``, (n_realisations, n_frames, 4)."""
+    table = pd.read_csv(mixing)
+    table = table[table["source"].str.fullmatch(r"dem(_\d+)?")]
+    wide = table.pivot_table(index=["source", "time_s"], columns="group", values="fraction_remaining_1")
+    wide = wide[[group for _, group in GROUPS]]
+    return np.array([part.to_numpy() for _, part in wide.groupby(level="source")])

@@ -1,0 +1,72 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Start, watch and progress of a two-fluid run, without the solver."""
+
+import numpy as np
+import pytest
+
+from bedchain.case.load import load_case
+from bedchain.dem import two_fluid
+from bedchain.dem.two_fluid import Progress, check_solids, field_text, largest_solids, start_solids
+from bedchain.errors import UserError
+from made import ROOT
+
+
+@pytest.fixture
+def case():
+    return load_case(ROOT / "cases" / "short" / "case.yaml")
+
+
+def test_the_bed_at_the_start_holds_all_particles_and_is_uneven(case):
+    solids = start_solids(case)
+    volume = solids.sum() * 0.005**2 * 1e-3
+    assert volume == pytest.approx(9000 * np.pi / 6 * 1e-9, rel=1e-9)
+    assert solids.max() == pytest.approx(0.82 * 2 / 3)
+    assert np.ptp(solids.sum(axis=0)) > 0.1
+    assert solids.max() < largest_solids(case) == 0.605
+
+
+def watched(gas, name, values):
+    file = gas / "postProcessing" / name / "0" / f"{name}.dat"
+    file.parent.mkdir(parents=True)
+    lines = [f"{0.025 * (at + 1):g}\t{value:.9e}" for at, value in enumerate(values)]
+    file.write_text("# Time value\n" + "\n".join(lines) + "\n")
+
+
+@pytest.mark.parametrize(("factor", "stops"), [(1.0, False), (1.0005, False), (0.998, True), (1.0011, True)])
+def test_solids_that_drift_stop_the_run_with_the_time(case, tmp_path, factor, stops):
+    mean = start_solids(case).mean()
+    watched(tmp_path, "solids", [mean, factor * mean])
+    watched(tmp_path, "largest", [0.55, 0.6])
+    if not stops:
+        check_solids(tmp_path, case, (0, 0.05))
+        return
+    with pytest.raises(UserError, match=r"at 0.05 s the solids' mass is [-+]0.\d+% off, more than 0.1%"):
+        check_solids(tmp_path, case, (0, 0.05))
+
+
+def test_solids_above_their_packing_limit_are_named_with_time_and_place(case, tmp_path):
+    grid = two_fluid.grid_of(case)
+    watched(tmp_path, "solids", [start_solids(case).mean()] * 2)
+    watched(tmp_path, "largest", [0.55, 0.66])
+    (tmp_path / "0.05").mkdir()
+    solids = np.full((grid.nz, grid.nx), 0.3)
+    solids[3, 5] = 0.66
+    head = b"internalField nonuniform List<scalar> %d\n("
+    faces = grid.nz * (grid.nx - 1) + (grid.nz - 1) * grid.nx
+    for name, values in (("alpha.particles", solids), ("alphaRhoPhi.particlesMean", np.zeros(faces))):
+        (tmp_path / "0.05" / name).write_bytes(head % values.size + values.tobytes() + b")")
+    with pytest.raises(UserError, match=r"at 0.05 s a cell has 0.660 .* 0.605 .*x 0.0275 m, z 0.0175 m"):
+        check_solids(tmp_path, case, (0, 0.05))
+
+
+def test_values_of_cells_as_openfoam_reads_them():
+    assert field_text(np.array([[0.5, 0]])) == "internalField nonuniform List<scalar> 2\n(\n0.5\n0\n);\n"
+
+
+def test_progress_takes_time_and_cost_of_the_solver_s_lines(capsys):
+    progress = Progress(2.0, 1.0)
+    progress.last -= 60
+    for line in ("Time = 1.5\n", "ExecutionTime = 12.5 s  ClockTime = 13 s\n", "PIMPLE: iteration 1\n"):
+        progress(line)
+    assert progress.now_s == 1.5 and progress.cpu_s == 12.5
+    assert "two_fluid: 1.500 of 2 s simulated" in capsys.readouterr().err
