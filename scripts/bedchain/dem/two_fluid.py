@@ -99,8 +99,8 @@ def run_two_fluid(folder: Path, case: Case) -> None:
         before = folder / f"segment_{index - 1:04d}"
         with atomic_folder(target) as part:
             prepare(part, folder / "caseParameters", before if index > 1 else None, case, span)
-            record = run_segment(part, case, span)
-            keep_frames(part, case, span)
+            record = run_segment(part, case, span, lost_until(before))
+            keep_frames(part, case, span, lost_until(before))
             write_text(part / "segment.json", json.dumps(record) + "\n")
 
 
@@ -117,6 +117,7 @@ def prepare(part: Path, parameters: Path, before: Path | None, case: Case, span:
             write_text(gas / name, field_text(values))
     else:
         copy_last_state(before / "gas", gas)
+        shutil.copytree(TEMPLATES / "system", gas / "system", dirs_exist_ok=True)
         for name in ("startSolids", "startGas"):
             shutil.copy(before / "gas" / name, gas)
     shutil.copy(parameters, gas / "caseParameters")
@@ -137,8 +138,14 @@ def field_text(values: NDArray[np.float64]) -> str:
     return f"internalField nonuniform List<scalar> {values.size}\n(\n{numbers}\n);\n"
 
 
-def run_segment(part: Path, case: Case, span: tuple[float, float]) -> dict[str, Any]:
-    """Run the solver over a segment; its start, end and processor time.
+def lost_until(segment: Path) -> float:
+    """Solids that left at the top until the end of a segment [kg]; 0 before the first one."""
+    record = segment / "segment.json"
+    return float(json.loads(record.read_text()).get("lost_kg", 0)) if record.exists() else 0.0
+
+
+def run_segment(part: Path, case: Case, span: tuple[float, float], lost_kg: float) -> dict[str, Any]:
+    """Run the solver over a segment; its start, end and processor time, and the solids lost until its end.
 
     Raises
     ------
@@ -153,15 +160,45 @@ def run_segment(part: Path, case: Case, span: tuple[float, float]) -> dict[str, 
             f"the two-fluid run became unstable at {progress.now_s:g} s: take a smaller time.gas_step_s or a "
             f"larger gas.cell_size_m\n{error}"
         ) from None
-    check_solids(gas, case, span)
-    return {"start_s": span[0], "end_s": span[1], "cpu_s": progress.cpu_s}
+    lost = lost_kg + check_solids(gas, case, span, lost_kg)
+    return {"start_s": span[0], "end_s": span[1], "cpu_s": progress.cpu_s, "lost_kg": lost}
 
 
-def check_solids(gas: Path, case: Case, span: tuple[float, float]) -> None:
-    """Refuse (`UserError`) a segment whose solids drifted or passed their packing limit: time and place."""
-    expected = float(start_solids(case).mean())
-    mass = read_series(gas, "solids")
-    drift = mass["value"] / expected - 1
+def drift_of(gas: Path, case: Case, lost_kg: float) -> tuple[pd.DataFrame, float]:
+    """What solids in the bed and those that left sum to, over those at the start, less 1; and what left [kg].
+
+    Parameters
+    ----------
+    gas : Path
+        OpenFOAM case of a segment.
+    case : dict
+    lost_kg : float
+        Solids that left before [kg].
+
+    Returns
+    -------
+    DataFrame
+        time_s, drift [1].
+    float
+        Solids that left in the segment [kg].
+    """
+    particles = case["particles"]
+    whole = particles["density_kg_m3"] * particles["number"] * math.pi / 6 * particles["diameter_m"] ** 3
+    mass, left = read_series(gas, "solids"), read_series(gas, "left")
+    out = (left["value"] * case["time"]["gas_step_s"]).cumsum()
+    until = np.interp(mass["time_s"], left["time_s"], out, left=0.0)
+    inside = mass["value"] / start_solids(case).mean()
+    drift = inside + (lost_kg + until) / whole - 1
+    return pd.DataFrame({"time_s": mass["time_s"], "drift": drift}), float(out.iloc[-1])
+
+
+def check_solids(gas: Path, case: Case, span: tuple[float, float], lost_kg: float = 0.0) -> float:
+    """Refuse (`UserError`) a segment whose solids drifted or passed their packing limit: time and place.
+
+    What leaves at the top is no drift; it is given back [kg].
+    """
+    mass, lost = drift_of(gas, case, lost_kg)
+    drift = mass["drift"]
     if (far := drift.abs() > DRIFT_MAX).any():
         at = int(np.flatnonzero(far)[0])
         raise UserError(
@@ -180,6 +217,7 @@ def check_solids(gas: Path, case: Case, span: tuple[float, float]) -> None:
             f"the packing limit {limit:g} (densest at {span[1]:g} s: x {grid.cell_m * (column + 0.5):.3g} "
             f"m, z {grid.cell_m * (row + 0.5):.3g} m): take a smaller time.gas_step_s"
         )
+    return lost
 
 
 def read_series(gas: Path, name: str) -> pd.DataFrame:
@@ -188,7 +226,7 @@ def read_series(gas: Path, name: str) -> pd.DataFrame:
     return pd.read_csv(file, sep=r"\s+", comment="#", names=["time_s", "value"])
 
 
-def keep_frames(part: Path, case: Case, span: tuple[float, float]) -> None:
+def keep_frames(part: Path, case: Case, span: tuple[float, float], lost_kg: float) -> None:
     """Gather the frames in ``flow.npz`` and the pressure in ``series.csv``; of the fields the last stay."""
     gas, grid, density = part / "gas", grid_of(case), case["particles"]["density_kg_m3"]
     times = [item for item in gas.iterdir() if re.fullmatch(r"[0-9.]+", item.name)]
@@ -205,12 +243,12 @@ def keep_frames(part: Path, case: Case, span: tuple[float, float]) -> None:
         },
     )
     pressure = read_series(gas, "pressure")
-    mass = read_series(gas, "solids").set_index("time_s")["value"]
+    mass, _ = drift_of(gas, case, lost_kg)
     table = pd.DataFrame(
         {
             "time_s": pressure["time_s"],
             "pressure_drop_Pa": pressure["value"] - OUTSIDE_PA,
-            "solids_drift_1": np.interp(pressure["time_s"], mass.index, mass / start_solids(case).mean() - 1),
+            "solids_drift_1": np.interp(pressure["time_s"], mass["time_s"], mass["drift"]),
         }
     )
     write_csv(table, part / "series.csv")

@@ -37,6 +37,7 @@ def test_solids_that_drift_stop_the_run_with_the_time(case, tmp_path, factor, st
     mean = start_solids(case).mean()
     watched(tmp_path, "solids", [mean, factor * mean])
     watched(tmp_path, "largest", [0.55, 0.6])
+    watched(tmp_path, "left", [0.0, 0.0])
     if not stops:
         check_solids(tmp_path, case, (0, 0.05))
         return
@@ -44,10 +45,20 @@ def test_solids_that_drift_stop_the_run_with_the_time(case, tmp_path, factor, st
         check_solids(tmp_path, case, (0, 0.05))
 
 
+def test_solids_that_leave_at_the_top_are_no_drift(case, tmp_path):
+    mean, whole = start_solids(case).mean(), 2600 * 9000 * np.pi / 6 * 1e-9
+    watched(tmp_path, "solids", [0.996 * mean, 0.99 * mean])
+    watched(tmp_path, "largest", [0.55, 0.6])
+    # 0.4 % before, and 0.6 % in the last step
+    watched(tmp_path, "left", [0.0, 0.006 * whole / case["time"]["gas_step_s"]])
+    assert check_solids(tmp_path, case, (0, 0.05), 0.004 * whole) == pytest.approx(0.006 * whole)
+
+
 def test_solids_above_their_packing_limit_are_named_with_time_and_place(case, tmp_path):
     grid = two_fluid.grid_of(case)
     watched(tmp_path, "solids", [start_solids(case).mean()] * 2)
     watched(tmp_path, "largest", [0.55, 0.66])
+    watched(tmp_path, "left", [0.0, 0.0])
     (tmp_path / "0.05").mkdir()
     solids = np.full((grid.nz, grid.nx), 0.3)
     solids[3, 5] = 0.66
