@@ -16,6 +16,7 @@ rule build_solver:
         solver=SOLVER,
     log:
         "logs/build_solver.log",
+    priority: 2  # what the particles wait for
     conda:
         "../envs/python.yaml"
     threads: 2
@@ -32,6 +33,7 @@ rule write_parameters:
         openfoam=f"{BED}/caseParameters",
     log:
         f"{LOGS}/write_parameters.log",
+    priority: 2  # what the particles wait for
     conda:
         "../envs/python.yaml"
     params:
@@ -73,6 +75,7 @@ rule run_dem:
         f"{LOGS}/run_dem.log",
     benchmark:
         f"{BENCHMARKS}/run_dem.tsv"
+    priority: 2  # longest of all: what another bed and the repeats have to do fits beside it and after it
     conda:
         "../envs/python.yaml"
     threads: CASE["run"]["ranks"]

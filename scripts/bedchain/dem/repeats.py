@@ -15,6 +15,8 @@ PERTURBED = "perturbed"
 # rms 0.003 m/s, 1 % of the particles' rms velocity in the short bed: the same particle of two repeats is a
 # diameter apart after 0.08 s, its velocities are uncorrelated (below 1/e) after 0.6 s
 KICK_M_S = 5e-3
+# that ./run takes unless other words say so
+CORES = 2
 # so large that two repeats never take the same prime
 SEED_SPACING = 1000
 # range that LIGGGHTS accepts
@@ -37,6 +39,19 @@ def repeat_ranks(ranks: int, repeats: int) -> int:
         How many repeats the case has [1].
     """
     return 1 if repeats > 1 else ranks
+
+
+def repeats_at_once(ranks: int, repeats: int) -> int:
+    """Repeats that run side by side on the cores of ``./run`` [1].
+
+    Parameters
+    ----------
+    ranks : int
+        MPI ranks of each of them [1].
+    repeats : int
+        How many there are [1].
+    """
+    return max(1, min(repeats, CORES // ranks))
 
 
 def kick_seed(seed: int, number: int) -> int:

@@ -3,7 +3,7 @@
 
 import pytest
 
-from bedchain.dem.repeats import LARGEST_SEED, kick_seed, repeat_ranks, segment_that_ends
+from bedchain.dem.repeats import LARGEST_SEED, kick_seed, repeat_ranks, repeats_at_once, segment_that_ends
 from bedchain.errors import UserError
 from bedchain.physics.whole_numbers import is_prime
 
@@ -27,3 +27,5 @@ def test_a_repeat_finds_its_segment_or_says_where_it_can_start():
 def test_several_repeats_run_side_by_side_on_one_rank_each():
     assert [repeat_ranks(2, repeats) for repeats in (1, 2, 3)] == [2, 1, 1]
     assert repeat_ranks(1, 3) == 1
+    # on two cores: two of one rank, one of two or more
+    assert [repeats_at_once(*of) for of in ((1, 3), (1, 1), (2, 3), (4, 3))] == [2, 1, 1, 1]

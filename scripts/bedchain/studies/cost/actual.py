@@ -9,6 +9,7 @@ import numpy as np
 import pandas as pd
 
 from bedchain.case.schema import Case
+from bedchain.dem.repeats import repeats_at_once
 from bedchain.measures.mixing import GROUPS
 from bedchain.meter import BYTES_IN_MB
 from bedchain.provenance import rule_times
@@ -72,9 +73,9 @@ def _solver_stages(case: Case, bed: Path, times: Mapping[str, Numbers]) -> dict[
         rows[name] = {"wall_s": sum(segment[f"{name}_s"] for segment in segments), "done_1": done}
     rows["dem"] |= {"disk_mb": _size_mb(state.rglob("*")), **_memory_of(times, "run_dem")}
     repeats = [simulated_here(file) for file in sorted(bed.glob("repeats/*/dem.json"))]
-    # of each segment: its share of the cores that the run has, since repeats run side by side
+    # of each segment: its share of the cores, since repeats run side by side
     parts = [
-        segment | {"share": min(1.0, repeat["ranks"] / case["run"]["ranks"])}
+        segment | {"share": 1 / repeats_at_once(repeat["ranks"], case["comparison"]["repeats"])}
         for repeat in repeats
         if repeat
         for segment in repeat["segments"]

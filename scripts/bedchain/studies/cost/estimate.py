@@ -11,7 +11,7 @@ from bedchain.case.presets import Preset, with_preset
 from bedchain.case.schema import Case
 from bedchain.dem import disk
 from bedchain.dem.memory import solver_bytes
-from bedchain.dem.repeats import repeat_ranks
+from bedchain.dem.repeats import repeat_ranks, repeats_at_once
 from bedchain.errors import CaseError
 from bedchain.meter import BYTES_IN_MB
 from bedchain.physics.whole_numbers import ratio
@@ -85,8 +85,7 @@ def solver_stages(case: Case, speed: Speed) -> dict[str, Numbers]:
         starts = _segments(case, window_s) * machine_speed.SEGMENT_START_S / speed.jobs
         wall = sum(solver_wall(one, window_s, speed).values()) + starts
         rows["repeats"] = {
-            # as many side by side as the run has ranks
-            "wall_s": repeats * wall * one.ranks / bed.ranks,
+            "wall_s": repeats * wall / repeats_at_once(one.ranks, repeats),
             "memory_mb": solver_bytes(one.number, one.ranks) / BYTES_IN_MB,
             "disk_mb": repeats * run_disk(case, bed, window_s),
         }
