@@ -18,15 +18,14 @@ from bedchain.case.cell_checks import not_flat
 from bedchain.case.chosen import is_auto
 from bedchain.command_line.failures import failure_report
 from bedchain.lifetime import begin_run, end_all_at_sigterm
+from bedchain.rule_files import code, source_files
 from bedchain.workflow import (
     case_or_exit,
-    code,
     options_or_exit,
     pick,
     preset_name,
     quote_interpreter,
     reference_or_exit,
-    source_files,
     targets_or_exit,
     words_or_exit,
 )

@@ -10,7 +10,8 @@ import shlex
 
 from bedchain.case.two_fluid import two_fluid_grids
 from bedchain.studies.tradeoff.bed_variants import variants_or_exit
-from bedchain.workflow import dated, peers_or_exit
+from bedchain.rule_files import dated
+from bedchain.workflow import peers_or_exit
 
 SCORE_PLOTS = ["fig_pareto", "fig5_best", "fig_autocorrelation", "fig_distribution_best"]
 

@@ -19,13 +19,13 @@ import pandas as pd
 from bedchain.errors import UserError, report_user_errors
 from bedchain.files import write_csv
 from bedchain.lifetime import end_with_run
+from bedchain.rule_files import files_behind, source_files
 from bedchain.studies.stability.bed_settings import bed_settings
 from bedchain.studies.stability.chain_settings import chain_settings
 from bedchain.studies.stability.maps import draw_maps
 from bedchain.studies.stability.settings import StabilitySetting, chosen, is_of_chains
 from bedchain.studies.stability.study import LONGEST_S, run_study
 from bedchain.studies.stability.verdict import FAULTS
-from bedchain.workflow import files_behind, source_files
 
 SOLVER = Path("results/bin/bedFoam")
 FOLDER = Path("results/stability")
