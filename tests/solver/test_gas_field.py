@@ -7,11 +7,13 @@ import matplotlib.image
 import numpy as np
 import pandas as pd
 import pytest
+import pyvista
 
 from bedchain.dem.gas_field import nearest_gas, read_gas_field
 from bedchain.errors import UserError
 from bedchain.figures.style import FigureFiles
 from bedchain.trajectory.store import BedFiles, read_manifest
+from export_bed import link_gas
 from made.gas import COLUMNS, HEIGHT, ROWS, WIDTH, voidage_at, write_gas
 from made.synthetic_bed import rolling_bed, write_run
 from parse_dumps import parse_dumps
@@ -38,6 +40,18 @@ def test_reading_leaves_the_case_as_it_is(case):
     before = sorted(case.rglob("*"))
     read_gas_field(case, "voidage")
     assert sorted(case.rglob("*")) == before
+
+
+def test_a_viewer_reads_the_exported_gas(case, tmp_path):
+    for _ in range(2):  # an export may be made again
+        link_gas(case, tmp_path / "export")
+    reader = pyvista.POpenFOAMReader(str(tmp_path / "export" / "gas.foam"))
+    reader.case_type = "decomposed" if list(case.glob("processor*")) else "reconstructed"
+    reader.set_active_time_value(1.0)
+    mesh = reader.read()["internalMesh"]
+    x, _, z = mesh.cell_centers().points.T
+    assert mesh.n_cells == COLUMNS * ROWS
+    np.testing.assert_allclose(mesh.cell_data["voidage"], voidage_at(x, z), atol=1e-6)
 
 
 def test_missing_field_is_refused(case):
