@@ -29,7 +29,7 @@ CORNER_COLUMNS, CORNER_ROWS = 5, 12
 # rows of the bed whose first cell is named, at most
 NAMED_ROWS = 11
 GRID_COLOUR = "#666666"
-PANEL_IN, LOWEST_IN, TALLEST_IN = 1.15, 1.6, 4.4
+PANEL_IN, LOWEST_IN, TALLEST_IN = 1.05, 1.15, 4.4
 # room for axes and titles
 AROUND_IN = 0.75
 
@@ -70,8 +70,8 @@ def plot_cells(bed: BedFiles, files: FigureFiles, time_s: float, diameter_m: flo
         size = (columns * grid.cell_width_m, rows * grid.cell_height_m)
         whole.add_patch(Rectangle((0, 0), *size, fill=False, edgecolor="black", linewidth=1.2, zorder=5))
         across, up = run.grid.labels
-        whole.set(xlabel=across.split(" (")[0], ylabel=up)
-        corner.set_xlabel(across.split(" (")[0])
+        for axes in (whole, corner):
+            axes.set(xlabel=across.split(" (")[0], ylabel=up)
         whole.set_title(f"bed at {run.times_s[frame]:.2f} s")
         corner.set_title("lower left corner")
         if note := _note(run.grid, height):
@@ -112,7 +112,8 @@ def cell_table(grid: Grid, held: np.ndarray, time_s: float) -> pd.DataFrame:
 
 def _note(grid: Grid, height: float) -> str:
     """What the picture leaves out: cells above it, and what is behind it."""
-    above = f"The cells go on above, to {grid.shown.height_m:g} m: {grid.columns} x {grid.rows} in all."
+    size = f"{grid.columns} x {grid.rows} in all"
+    above = f"Cells and bed go on above, to {grid.shown.height_m:g} m: {size}."
     behind = f"The picture is a projection ({grid.projection})."
     return " ".join([above] * (height < grid.shown.height_m) + [behind] * bool(grid.projection))
 

@@ -123,7 +123,7 @@ def _legend(figure: Figure, lags: list[float], colours: dict[str, str], banded: 
         Line2D([], [], color=colours["dem"], lw=1.6),
         Patch(color=BAND_COLOUR, alpha=BAND_OPACITY, lw=0),
     ]
-    labels = ["DEM", "its 95 % band"] if banded else ["DEM", "its band unknown: window too short"]
+    labels = ["DEM", "its 95 % band"] if banded else ["DEM", "no band: window too short"]
     for lag, (dash, marker) in zip(lags, STYLES, strict=False):
         handles.append(
             Line2D([], [], color="#444444", linestyle=dash, marker=marker, ms=3.4, mfc="white", mew=0.9)

@@ -8,7 +8,14 @@ import pandas as pd
 from matplotlib import pyplot as plt
 from matplotlib.axes import Axes
 
-from bedchain.figures.style import DOUBLE_COLUMN_IN, LINE_COLOUR, FigureFiles, figure_style
+from bedchain.figures.style import (
+    DOUBLE_COLUMN_IN,
+    LINE_COLOUR,
+    FigureFiles,
+    figure_style,
+    footnote,
+    label_parts,
+)
 from bedchain.files import write_csv
 from bedchain.measures.choice import MOST_ADDED, REACHED
 from bedchain.stage import run_stage
@@ -16,6 +23,10 @@ from bedchain.stage import run_stage
 COLOURS = {"x": "#4477aa", "z": "#ee6677"}
 DASHES = {"x": "-", "z": (0, (4, 1.5))}
 BAND_OPACITY = 0.2
+NOTE = """Left: variance of the particles' displacements over twice the lag, in colour 95 % bands; chosen
+is the first lag at which both axes reach {reached:.0f} % (dotted), or a later one if memory remains; grey:
+lags chosen when a fifth of the window is left out. Right: chosen are the largest cells that add less than
+{added:.0f} % (dotted) along both axes."""
 SHOWN_LAGS = 4  # as many times the chosen lag: later ones only show that particles have seen the whole bed
 
 
@@ -32,12 +43,13 @@ def plot_choice(choice: Path, curve: Path, files: FigureFiles) -> None:
     chosen = pd.read_csv(choice).set_index("quantity")["value"]
     table = pd.read_csv(curve)
     with figure_style():
-        figure, (left, right) = plt.subplots(1, 2, figsize=(DOUBLE_COLUMN_IN, 2.7))
+        figure, (left, right) = plt.subplots(1, 2, figsize=(DOUBLE_COLUMN_IN, 3.1))
         _draw_dispersion(left, table[table["quantity"] == "dispersion"], chosen)
         _draw_added(right, table[table["quantity"] == "added_share"], chosen)
         figure.legend(
             *left.get_legend_handles_labels(), loc="outside upper center", ncols=4, handlelength=2.4
         )
+        footnote(figure, NOTE.format(reached=100 * REACHED, added=100 * MOST_ADDED))
         files.save(figure)
     write_csv(table, files.csv)
 
@@ -73,6 +85,8 @@ def _draw_added(axes: Axes, table: pd.DataFrame, chosen: pd.Series) -> None:
     sizes = 100 * np.sort(table["cell_m"].unique())
     axes.set(xscale="log", yscale="log", xlabel="side of a cell [cm]", xlim=(0.9 * sizes[0], 1.1 * sizes[-1]))
     axes.set_ylabel("dispersion that the cells add [%]")
+    for axis in (axes.xaxis, axes.yaxis):
+        label_parts(axis, (1, 3))
     axes.set_title(f"{chosen['columns']:.0f} x {chosen['rows']:.0f} cells", loc="left")
 
 

@@ -2,6 +2,7 @@
 """Difference map of the batch of Figs. 3 and 4: static chain less dynamic chain."""
 
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import pandas as pd
@@ -12,7 +13,7 @@ from matplotlib.colors import LinearSegmentedColormap, Normalize
 
 from bedchain.array_files import read_arrays
 from bedchain.errors import UserError, make_again
-from bedchain.figures.maps import cell_columns, height_to_show, map_panels, projection_note
+from bedchain.figures.maps import cell_columns, height_to_show, left_out_note, map_panels
 from bedchain.figures.style import FigureFiles, figure_style, footnote
 from bedchain.files import write_csv
 from bedchain.measures.batch import total_variation
@@ -29,6 +30,12 @@ HATCHED = 0.15
 HATCH, HATCH_COLOUR, HATCH_WIDTH = "/" * 7, "#10305f", 0.3
 # colours end where all but this share of the cells of all moments are below
 TOP_SHARE = 0.005
+# a map less high than this over its width leaves no room for a colour bar beside it
+FLAT = 1.6
+# height of a page with the bar below: that of maps so wide, and of what is above and below them [inches]
+WIDE_IN, AROUND_IN = 0.95, 1.75
+BESIDE: dict[str, Any] = {"pad": 0.015}
+BELOW: dict[str, Any] = {"location": "bottom", "shrink": 0.5, "pad": 0.05}
 NOTE = """Above each map: share of the batch that would have to change cells to turn one chain's map into
 the other's (total variation); {mean:.1f} % in the mean of the moments. Hatched: the dynamic chain has more,
 by over {hatched:.2g} % of the batch in a cell."""
@@ -80,12 +87,16 @@ def draw_maps(
         mesh = _draw_map(axes, values, grid.shown, limit)
         axes.set_title(f"{moment:.2f} s\n{100 * distance:.0f} %")
     panels[0, 0].set_ylabel(grid.labels[1])
-    bar = figure.colorbar(mesh, ax=panels, extend="both", aspect=22, pad=0.015)
-    bar.set_label("static less dynamic chain\n[% of the batch in a cell]")
-    bar.ax.axhspan(-limit, -HATCHED * limit, fill=False, hatch=HATCH, edgecolor=HATCH_COLOUR, linewidth=0)
+    flat = height < FLAT * grid.shown.width_m
+    if flat:
+        figure.set_figheight(AROUND_IN + height / grid.shown.width_m * WIDE_IN)
+    bar = figure.colorbar(mesh, ax=panels, extend="both", aspect=22, **(BELOW if flat else BESIDE))
+    bar.set_label(f"static less dynamic chain{' ' if flat else chr(10)}[% of the batch in a cell]")
+    span = bar.ax.axvspan if flat else bar.ax.axhspan
+    span(-limit, -HATCHED * limit, fill=False, hatch=HATCH, edgecolor=HATCH_COLOUR, linewidth=0)
     bar.outline.set_linewidth(0.5)
     note = NOTE.format(mean=100 * distances.mean(), hatched=HATCHED * limit)
-    footnote(figure, f"{note} {projection_note(grid)}")
+    footnote(figure, f"{note} {left_out_note(grid, height)}")
     files.save(figure)
 
 

@@ -60,9 +60,9 @@ def plot_discussion(
     spread = relative_dispersion(table[table["part"] == "x"])
     with figure_style():
         figure, panels = plt.subplots(1, 3, figsize=(DOUBLE_COLUMN_IN, 3.4))
+        panels[1].sharey(panels[0])  # before anything is drawn: both ask for room
         _draw_errors(panels[0], errors[own["lag_s"]], "cell_m", colours, CM)
         _draw_errors(panels[1], errors[own["cell_m"]], "lag_s", colours, 1.0)
-        panels[1].sharey(panels[0])
         panels[0].set(xlabel="cell size [cm]", ylabel="error of the share on its side [1]")
         panels[0].set_title(f"lag {own_lag_s:g} s", loc="left")
         panels[1].set(xlabel="lag [s]")

@@ -9,11 +9,16 @@ from matplotlib.colors import PowerNorm
 from matplotlib.figure import Figure
 
 from bedchain.array_files import read_arrays
-from bedchain.figures.maps import cell_columns, height_to_show, map_panels, projection_note
+from bedchain.figures.maps import cell_columns, height_to_show, left_out_note, map_panels
 from bedchain.figures.model_styles import label
 from bedchain.figures.style import FigureFiles, draw_cells, figure_style, footnote, map_colours
 from bedchain.files import write_csv
-from bedchain.measures.batch import batch_of, observed_shares, total_variation
+from bedchain.measures.batch import (
+    batch_of,
+    expected_total_variation,
+    observed_shares,
+    total_variation,
+)
 from bedchain.stage import LOG, run_stage
 from bedchain.trajectory.cell_store import CellStore, frame_at, open_cells
 from bedchain.trajectory.grid import Grid
@@ -24,8 +29,8 @@ GAMMA = 0.5
 # colours end where all but this share of the DEM's occupied cells of all moments are below
 TOP_SHARE = 0.02
 NOTE = """Above each map of the chain: share of the batch that would have to change cells to turn the DEM's
-map into the chain's (total variation); in brackets, the same for as many particles as the batch drawn from
-the chain itself. Cells with less than one particle's share, {least:.2g} %, are white."""
+map into the chain's (total variation); in brackets, the same expected of as many particles as the batch drawn
+from the chain's map. Cells with less than one particle's share, {least:.2g} %, are white."""
 
 
 def plot_distribution(
@@ -52,28 +57,24 @@ def plot_distribution(
     store = open_cells(cells)
     content = read_arrays(chain)
     model = str(content["model"]) if "model" in content else model
-    moments, expected, drawn = (
-        content[name] for name in ("moments_s", "batch_share", "batch_share_monte_carlo")
-    )
+    moments, expected = content["moments_s"], content["batch_share"]
     # the best chain of the scores has none
     without = content.get("batch_share_left_out", expected[:0])
     observed = observed_shares(store, moments, start_s, batch_height_m)
+    start = np.asarray(store.cells[frame_at(store.times_s, start_s)])
+    number = int(batch_of(store.grid, start, batch_height_m).sum())
+    by_dem = [100 * total_variation(*pair) for pair in zip(observed, expected, strict=True)]
     # the batch is finite: as many particles drawn from the chain itself differ from its expectation too
-    by_dem, by_chance = (
-        [100 * total_variation(*pair) for pair in zip(shares, expected, strict=True)]
-        for shares in (observed, drawn)
-    )
+    by_chance = [100 * expected_total_variation(shares, number) for shares in expected]
     LOG.info(
         "total variation of the %s chain from the DEM at %s s: %s %%; of particles drawn from it: %s %%",
         model, moments, np.round(by_dem), np.round(by_chance),
     )  # fmt: skip
     notes = [f"{dem:.0f} % ({chance:.0f} %)" for dem, chance in zip(by_dem, by_chance, strict=True)]
-    start = np.asarray(store.cells[frame_at(store.times_s, start_s)])
-    least = 1 / batch_of(store.grid, start, batch_height_m).sum()
     with figure_style():
         height = height_to_show(store, moments, start_s)
         shares = np.array([observed, expected])
-        files.save(draw_moments(store.grid, moments, shares, height, least, notes, model, colour_map))
+        files.save(draw_moments(store.grid, moments, shares, height, 1 / number, notes, model, colour_map))
     sources = {"dem": observed, model: expected}
     table = pd.concat([shares_of(store, moments, *source) for source in sources.items()], ignore_index=True)
     value, left_out = (store.grid.projected(shares) for shares in (expected, without))
@@ -101,7 +102,7 @@ def draw_moments(
     bar = figure.colorbar(mesh, ax=panels, extend="max", aspect=35, shrink=0.9, pad=0.015)
     bar.set_label("share of the batch in a cell [%],\nsquare-root scale")
     bar.outline.set_linewidth(0.5)
-    footnote(figure, f"{NOTE.format(least=100 * least)} {projection_note(grid)}")
+    footnote(figure, f"{NOTE.format(least=100 * least)} {left_out_note(grid, height)}")
     return figure
 
 

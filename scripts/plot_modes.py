@@ -12,8 +12,10 @@ from matplotlib.colors import LinearSegmentedColormap, Normalize
 from matplotlib.figure import Figure
 
 from bedchain.errors import UserError
+from bedchain.figures.maps import NARROWEST_IN
 from bedchain.figures.style import (
     DOUBLE_COLUMN_IN,
+    MOST_SLENDER,
     FigureFiles,
     close_frame,
     draw_cells,
@@ -35,7 +37,9 @@ FEWEST = 0.1
 # arrows in a row at most, and the length of the longest one between two arrows
 ARROWS, LONGEST = 12, 1.6
 LAYOUT = (0.03, 0, 0.97, 1)
-BESIDE_IN, ABOVE_IN, TALLEST_IN = 1.2, 0.75, 2.9
+BESIDE_IN, ABOVE_IN, TALLEST_IN = 2.9, 0.6, 2.9
+# a panel is as wide as its title; a narrower one has no room for two numbers below it
+TITLE_IN = 1.3
 
 
 def plot_modes(modes: Path, cells: Path, files: FigureFiles) -> None:
@@ -64,23 +68,26 @@ def plot_modes(modes: Path, cells: Path, files: FigureFiles) -> None:
     number = int(table.loc[table["quantity"] == "excess", "part"].nunique())
     panel_in = (DOUBLE_COLUMN_IN - BESIDE_IN) / (number + 1)
     tall = min(height / grid.width_m * panel_in, TALLEST_IN)
+    panel_in = tall / height * grid.width_m
+    page_in = min(BESIDE_IN + (number + 1) * max(panel_in, TITLE_IN), DOUBLE_COLUMN_IN)
+    ends = [0, grid.width_m] if panel_in > NARROWEST_IN else [grid.width_m]
     with figure_style():
         figure, panels = plt.subplots(
-            len(sources), number + 1, figsize=(DOUBLE_COLUMN_IN, (tall + ABOVE_IN) * len(sources)),
+            len(sources), number + 1, figsize=(page_in, (tall + ABOVE_IN) * len(sources)),
             sharex=True, sharey=True, squeeze=False,
         )  # fmt: skip
         for row, source in zip(panels, sources, strict=True):
             _draw_model(figure, row, table[table["source"] == source], grid)
             row[0].set_ylabel(f"{source} chain\n{labels[1]}")
         for axes in panels.ravel():
-            axes.set(xlim=(0, grid.width_m), ylim=(0, height), xticks=[0, grid.width_m])
-            axes.set_xticklabels(["0", f"{grid.width_m:g}"])
+            axes.set(xlim=(0, grid.width_m), ylim=(0, height))
+            axes.set_xticks(ends, [f"{end:g}" for end in ends])
             axes.set_aspect("equal")
             close_frame(axes)
         for axes in panels[-1]:
             axes.set_xlabel(labels[0])
-        # the labels on the left hang out of maps in the proportions of the bed
-        figure.set_layout_engine("constrained", rect=LAYOUT)
+        # the labels on the left hang out of maps in the proportions of the bed, if these fill their room
+        figure.set_layout_engine("constrained", rect=LAYOUT if panel_in > NARROWEST_IN else (0, 0, 1, 1))
         files.save(figure)
     write_csv(whole, files.csv)
 
@@ -99,7 +106,7 @@ def _draw_model(figure: Figure, row: np.ndarray, table: pd.DataFrame, grid: Grid
     bar = figure.colorbar(mesh, ax=row[:-1], aspect=16, pad=0.02, ticks=[-1, 0, 1])
     bar.set_label("excess of particles\n[of the largest]")
     speed_bar = figure.colorbar(_draw_flow(row[-1], table, grid), ax=row[-1], aspect=16, pad=0.04)
-    speed_bar.set_label("speed of the net flow [m/s]")
+    speed_bar.set_label("speed of the\nnet flow [m/s]")
     for each in (bar, speed_bar):
         each.outline.set_linewidth(0.5)
     row[-1].set_title("circulation", loc="left")
@@ -155,7 +162,8 @@ def _height_to_show(table: pd.DataFrame, grid: Grid) -> float:
     density = table[table["quantity"] == "density"].groupby("cell")["value"].max().to_numpy()
     by_row = density.reshape(grid.rows, grid.columns).sum(axis=1)
     above = by_row[::-1].cumsum()[::-1]
-    return shown_height(np.flatnonzero(above > NOT_SHOWN) * grid.columns, grid)
+    height = shown_height(np.flatnonzero(above > NOT_SHOWN) * grid.columns, grid)
+    return min(height, MOST_SLENDER * grid.width_m)
 
 
 if rule := globals().get("snakemake"):

@@ -27,6 +27,8 @@ TITLES = {
 }
 LINE_COLOUR, HALF_COLOURS = "#222222", ("#4477aa", "#ee6677")
 TREND_COLOUR = "#ee6677"
+# a drift is given to this, since round-off of a constant is no measurement [%]
+SMALLEST_PERCENT = 0.01
 NOTE = """Red: straight line through the series; its change over the window, with a 95 % interval, is the
 drift, in percent of the mean. Rows of voidage: one interval for all of them together. Squares, if any: rows
 that drift."""
@@ -119,13 +121,15 @@ def verdict(row: pd.Series) -> str:
     if not np.isfinite(ends).all():
         return "drift unknown: window too short"
     if row["stationary_1"]:
-        return f"no drift seen, at most {max(map(abs, ends)):.2g} %"
+        return f"no drift seen, at most {max(SMALLEST_PERCENT, *map(abs, ends)):.2g} %"
     return f"drifts by {ends[0]:+.2g} to {ends[1]:+.2g} %"
 
 
 def _draw_profile(axes: Axes, profile: np.ndarray, middles: np.ndarray, table: pd.DataFrame) -> None:
     """Voidage by height in both halves of the span; rows that drift are marked."""
     rows = table[table["quantity"] == "voidage"]
+    # the row above them is shown, so that no curve ends at the frame
+    row_m = float(middles[1] - middles[0]) if len(middles) > 1 else 0.0
     half = len(profile) // 2
     for part, name, colour, style in zip(
         (profile[:half], profile[half:]),
@@ -140,7 +144,7 @@ def _draw_profile(axes: Axes, profile: np.ndarray, middles: np.ndarray, table: p
         axes.plot(
             off["mean"], off["height_m"], "s", ms=3, mfc="none", color=LINE_COLOUR, label="row that drifts"
         )
-    axes.set(xlabel="voidage [1]", ylabel="z [m]", ylim=(0, 1.02 * rows["height_m"].max()))
+    axes.set(xlabel="voidage [1]", ylabel="z [m]", ylim=(0, float(rows["height_m"].max()) + row_m))
     unknown = int(rows["ci_low"].isna().sum())
     named = f"drift seen in {len(off) or 'none'} of {len(rows) - unknown} rows"
     axes.set_title(

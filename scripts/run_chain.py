@@ -2,14 +2,13 @@
 """A chain run over the comparison window, exactly and by Monte Carlo: results/<case>/chain_<model>.npz."""
 
 import json
-from collections.abc import Callable, Iterator
+from collections.abc import Iterator
 from pathlib import Path
 
 import numpy as np
-from numpy.typing import NDArray
 
 from bedchain.chains import registry
-from bedchain.chains.between_steps import densities_at, mixing_by_frame
+from bedchain.chains.between_steps import Fractions, densities_at, fractions_relearner, mixing_by_frame
 from bedchain.chains.chain import Chain
 from bedchain.chains.registry import ModelSettings
 from bedchain.errors import UserError, make_again
@@ -17,7 +16,7 @@ from bedchain.files import write_arrays
 from bedchain.measures.batch import Batch, batch_of
 from bedchain.measures.mixing import GROUPS, Splits
 from bedchain.stage import LOG, run_stage
-from bedchain.trajectory.frames import Window, lag_frames
+from bedchain.trajectory.frames import Frames, Window, lag_frames
 from bedchain.trajectory.realisations import open_bed
 from bedchain.trajectory.regrid import regrid
 from bedchain.trajectory.store import BedFiles
@@ -67,32 +66,31 @@ def run_chain(
     for_mixing, for_batch = np.random.default_rng(settings.seed).spawn(2)
     learned_from = run.frames(model.grid, learning.frames(run.times_s))
 
-    def curves(of: Chain, rng: np.random.Generator | None = None) -> np.ndarray:
-        return mixing_by_frame(of, fractions, start, splits, length, rng)
+    def curves(of: Chain, parts: Fractions, rng: np.random.Generator | None = None) -> np.ndarray:
+        return mixing_by_frame(of, parts, start, splits, length, rng)
 
-    def shares(of: Chain, rng: np.random.Generator | None = None) -> np.ndarray:
-        numbers = densities_at(of, fractions, start, marked, at, rng)[:, 0]
+    def shares(of: Chain, parts: Fractions, rng: np.random.Generator | None = None) -> np.ndarray:
+        numbers = densities_at(of, parts, start, marked, at, rng)[:, 0]
         own = model.grid == run.grid
         return (numbers if own else regrid(numbers, model.grid, run.grid)) / marked.sum()
 
-    relearn = registry.relearner(
-        model.name, learned_from, model.grid, lag, settings.estimator, **settings.options
-    )
     without: tuple[list[np.ndarray], list[np.ndarray]] = ([], [])
-    for other in left_out(relearn, correlation_times(learned_from, splits.split_x_m, lag)):
-        without[0].append(curves(other))
-        without[1].append(shares(other))
+    for of_kept in left_out(
+        learned_from, correlation_times(learned_from, splits.split_x_m, lag), model, settings
+    ):
+        without[0].append(curves(*of_kept))
+        without[1].append(shares(*of_kept))
     write_arrays(
         chain,
         {
             "times_s": run.times_s[which],
             "groups": np.array([group for _, group in GROUPS]),
-            "remaining": curves(model),
-            "remaining_monte_carlo": curves(model, for_mixing),
+            "remaining": curves(model, fractions),
+            "remaining_monte_carlo": curves(model, fractions, for_mixing),
             "remaining_left_out": np.reshape(without[0], (-1, length + 1, len(GROUPS))),
             "moments_s": np.array(batch.moments_s, float),
-            "batch_share": shares(model),
-            "batch_share_monte_carlo": shares(model, for_batch),
+            "batch_share": shares(model, fractions),
+            "batch_share_monte_carlo": shares(model, fractions, for_batch),
             "batch_share_left_out": np.reshape(without[1], (-1, len(at), run.grid.n_cells)),
             "lag_s": np.array(model.lag_s),
             "report": np.array(json.dumps(model.report)),
@@ -102,13 +100,21 @@ def run_chain(
              marked.sum())  # fmt: skip
 
 
-def left_out(relearn: Callable[[NDArray[np.bool_]], Chain], times: float) -> Iterator[Chain]:
-    """Chains learned without each block of a window of so many correlation times, none if it is too short."""
+def left_out(
+    frames: Frames, times: float, model: Chain, settings: ModelSettings
+) -> Iterator[tuple[Chain, Fractions]]:
+    """A model without each block of a window of so many correlation times, none if the window is too short.
+
+    Its fractions of a step are learned without the block too: else the band has no width in the first step.
+    """
     if short := shortness(times):
         LOG.warning("the learning window's %s", short)
         return
+    lag = lag_frames(model.lag_s, frames.interval_s)
+    relearn = registry.relearner(model.name, frames, model.grid, lag, settings.estimator, **settings.options)
+    of_step = fractions_relearner(frames, model.grid.n_cells, lag, settings.estimator)
     for kept in kept_blocks():
-        yield relearn(kept)
+        yield relearn(kept), of_step(kept)
 
 
 def moment_frames(moments_s: list[float], interval_s: float) -> list[int]:

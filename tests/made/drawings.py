@@ -6,6 +6,8 @@ from itertools import combinations
 import matplotlib.image
 import pandas as pd
 from matplotlib.axis import Axis
+from matplotlib.collections import QuadMesh
+from matplotlib.container import ErrorbarContainer
 from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 from matplotlib.text import Text
@@ -17,6 +19,10 @@ DPI = 80
 COLOURS = {"dem": "#222222", "static": "#ee6677", "dynamic": "#4477aa"}
 # a blank page has one colour; text, axes and data of the smallest figure have far more ink
 LEAST_INK = 0.01
+# of a page, on each side: more is paper wasted, mostly on maps in the proportions of the bed [inches]
+MOST_BLANK_IN = 0.5
+# a colour bar over the maps beside it, in height
+MOST_OF_MAPS = 1.5
 # boxes of text hold some air around the letters [points]; fonts of two machines differ by less
 AIR_PT = 1.0
 
@@ -39,7 +45,7 @@ class OnlyChecked(CheckedFiles):
 
 
 def layout_flaws(figure: Figure) -> list[str]:
-    """Texts that leave the page, overprint each other, or are crossed by a curve, one line each."""
+    """Texts off the page, overprinted or crossed by a curve, bars cut off, paper wasted: a line each."""
     figure.draw_without_rendering()
     air = AIR_PT * figure.dpi / 72
     boxes = {text: text.get_window_extent() for text in _visible_texts(figure)}
@@ -63,7 +69,44 @@ def layout_flaws(figure: Figure) -> list[str]:
             _crosses(line, legend.get_window_extent()) for line in axes.lines
         ):
             flaws.append("a curve crosses the legend")
-    return flaws
+    return flaws + _blank_margins(figure) + _cut_bars(figure) + _tall_colour_bars(figure)
+
+
+def _blank_margins(figure: Figure) -> list[str]:
+    """Sides of the page on which nothing is drawn far in."""
+    used, (wide, high) = figure.get_tightbbox(), figure.get_size_inches()
+    blank = {"left": used.x0, "bottom": used.y0, "right": wide - used.x1, "top": high - used.y1}
+    return [f"{inches:.2f} in are blank: {side}" for side, inches in blank.items() if inches > MOST_BLANK_IN]
+
+
+def _cut_bars(figure: Figure) -> list[str]:
+    """Error bars that leave their axes."""
+    return [
+        f"an error bar of {container.get_label()!r} is cut off"
+        for axes in figure.axes
+        for container in axes.containers
+        if isinstance(container, ErrorbarContainer)
+        for bars in container[2]
+        for path in bars.get_paths()
+        if not all(
+            axes.bbox.padded(1).contains(*end) for end in bars.get_transform().transform(path.vertices)
+        )
+    ]
+
+
+def _tall_colour_bars(figure: Figure) -> list[str]:
+    """Upright colour bars that are much higher than all that has their colours."""
+    maps = [axes for axes in figure.axes if any(isinstance(each, QuadMesh) for each in axes.collections)]
+    maps = [axes for axes in maps if axes.get_label() != "<colorbar>"]
+    if not maps:
+        return []
+    height = Bbox.union([axes.get_window_extent() for axes in maps]).height
+    bars = [axes.get_window_extent() for axes in figure.axes if axes.get_label() == "<colorbar>"]
+    return [
+        f"a colour bar is {bar.height / height:.1f} times as high as the maps"
+        for bar in bars
+        if bar.height > max(MOST_OF_MAPS * height, bar.width)
+    ]
 
 
 def _visible_texts(figure: Figure) -> list[Text]:

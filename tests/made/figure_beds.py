@@ -29,11 +29,13 @@ from made.drawings import DPI, CheckedFiles
 from made.synthetic_bed import rolling_bed, write_run, write_series
 from plot_cells import plot_cells
 from plot_chapman_kolmogorov import plot_chapman_kolmogorov
+from plot_choice import plot_choice
 from plot_cost import plot_cost
 from plot_difference import plot_difference
 from plot_discussion import plot_discussion
 from plot_distribution import plot_distribution
 from plot_mixing import plot_mixing
+from plot_modes import plot_modes
 from plot_snapshot import plot_snapshot
 from plot_stationarity import plot_stationarity
 from plot_timescales import plot_timescales
@@ -123,7 +125,7 @@ def write_chains(folder: Path, shape: Shape) -> None:
         )
         np.savez(
             folder / f"chain_{model}.npz", model=model, moments_s=MOMENTS, times_s=times, groups=list(GROUPS),
-            batch_share=smeared.reshape(len(MOMENTS), -1), batch_share_monte_carlo=dem,
+            batch_share=smeared.reshape(len(MOMENTS), -1),
             remaining=curves, remaining_left_out=curves + spread, batch_share_left_out=smeared[:0],
         )  # fmt: skip
 
@@ -168,6 +170,9 @@ def write_tables(folder: Path, shape: Shape) -> None:
     (folder / "provenance.json").write_text('{"machine": {"processor": "AMD EPYC"}}')
     write_csv(pd.DataFrame(diagnostics_rows()), folder / "diagnostics.csv")
     write_csv(pd.DataFrame(discussion_rows(own_cell(shape))), folder / "discussion.csv")
+    write_csv(pd.DataFrame(choice_rows(), columns=["quantity", "value"]), folder / "choice.csv")
+    write_csv(pd.DataFrame(choice_curve()), folder / "choice_curve.csv")
+    write_csv(modes_table(shape), folder / "modes.csv")
 
 
 def own_cell(shape: Shape) -> float:
@@ -225,6 +230,50 @@ def discussion_rows(own_cell_m: float) -> list[dict]:
     return rows
 
 
+def choice_rows() -> list[tuple[str, float]]:
+    """A lag of 0.2 s and cells of 3 cm."""
+    lags = [("lag_s", 0.2), ("lag_low_s", 0.15), ("lag_high_s", 0.3)]
+    return [*lags, ("cell_m", 0.03), ("columns", 9), ("rows", 35)]
+
+
+def choice_curve() -> list[dict]:
+    """Dispersion that rises and falls over the lag, and what cells add to it."""
+    rows = []
+    for axis, scale in (("x", 1e-3), ("z", 5e-3)):
+        for lag in 0.05 * np.arange(1, 16):
+            value = scale * lag / 0.2 * np.exp(1 - lag / 0.2)
+            rows.append({"quantity": "dispersion", "axis": axis, "lag_s": lag, "value": value,
+                         "ci_low": 0.8 * value, "ci_high": 1.25 * value})  # fmt: skip
+        for size in (0.003, 0.01, 0.03, 0.06):
+            rows.append(
+                {"quantity": "added_share", "axis": axis, "cell_m": size, "value": 0.03 * size / scale / 30}
+            )
+    return rows
+
+
+def modes_table(shape: Shape) -> pd.DataFrame:
+    """Two processes, side by side and one above the other, and a roll, for two chains."""
+    grid = Grid(shape.width, shape.height, shape.columns, shape.rows)
+    x, z = grid.centres_m[:, 0] / shape.width, grid.centres_m[:, 1] / shape.filled
+    held = np.where(z < 1, 1.0, 0.0)
+    density = held / held.sum()
+    values = {
+        ("excess", 1): np.sin(np.pi * (x - 0.5)) * held,
+        ("excess", 2): np.cos(np.pi * z) * held,
+        ("timescale", 1): np.full(len(x), 0.8),
+        ("timescale", 2): np.full(len(x), 0.6),
+        ("density", None): density,
+        ("flow_x", None): 0.3 * density * np.cos(np.pi * z) * np.sin(2 * np.pi * x),
+        ("flow_z", None): -0.3 * density * np.sin(np.pi * z) * np.cos(2 * np.pi * x),
+    }
+    return pd.concat(
+        pd.DataFrame({"source": source, "quantity": quantity, "part": part, "cell": np.arange(len(x)),
+                      "x_m": x, "z_m": z, "value": of_cells})
+        for source in MODELS[:2]
+        for (quantity, part), of_cells in values.items()
+    )  # fmt: skip
+
+
 def drawings(folder: Path, shape: Shape, out: Path, kind: type[FigureFiles] = CheckedFiles) -> dict:
     """A function for each figure of the bed, by its name, that saves it as files of a kind."""
     bed = BedFiles(*(folder / name for name in ("trajectory.npy", "trajectory.json", "cells.npz")))
@@ -264,6 +313,9 @@ def drawings(folder: Path, shape: Shape, out: Path, kind: type[FigureFiles] = Ch
             folder / "discussion.csv", files(name), own_cell(shape), LAG, of_chains
         ),
     }
+    choice = (folder / "choice.csv", folder / "choice_curve.csv")
+    figures["fig_choice"] = lambda name: plot_choice(*choice, files(name))
+    figures["fig_modes"] = lambda name: plot_modes(folder / "modes.csv", bed.cells, files(name))
     if not shape.drum:
         figures["snapshot"] = lambda name: plot_snapshot(
             folder / "dem.json", bed, files(name), START, shape.diameter, "coolwarm"

@@ -208,3 +208,16 @@ def test_error_bars_come_from_chains_learned_without_a_block(bed, tmp_path, monk
     low, high = bands.block_band(curves, left_out, "share")
     # the rolls turn alike at all times, so the chain itself is known well
     assert ((low < curves) & (curves < high))[1:].all() and (high - low).max() < 0.1
+
+
+def test_error_bars_of_a_long_lag_are_there_before_its_first_step(bed, tmp_path, monkeypatch):
+    monkeypatch.setattr(bands, "FEWEST_CORRELATION_TIMES", 0)
+    transitions, lag = tmp_path / "transitions.npz", 4
+    build_transitions(bed.files, transitions, "static", "pooled", lag * 0.025, LEARN)
+    run_chain(
+        bed.files, transitions, tmp_path / "chain.npz", LEARN, COMPARE, SPLITS,
+        Batch(BATCH, MOMENTS), ModelSettings("pooled", 3),
+    )  # fmt: skip
+    with np.load(tmp_path / "chain.npz") as chain:
+        spread = np.ptp(chain["remaining_left_out"], axis=0)
+    assert (spread[1:] > 0).all() and (spread[0] == 0).all()

@@ -18,6 +18,7 @@ from scipy import sparse
 
 from bedchain.chains.chain import Chain
 from bedchain.chains.counting import count_moves
+from bedchain.chains.counting_by_block import count_move_blocks
 from bedchain.chains.estimators import transition_matrix
 from bedchain.measures.mixing import Splits, side_shares, sides
 from bedchain.trajectory.frames import Frames
@@ -90,6 +91,21 @@ def learn_fractions(
         counts = count_moves(cells, n_cells, shorter, step_weights=weights and weights(shorter))
         matrices.append(transition_matrix(counts, estimator))
     return Fractions(tuple(matrices))
+
+
+def fractions_relearner(
+    frames: Frames, n_cells: int, lag: int, estimator: str = "pooled"
+) -> Callable[[NDArray[np.bool_]], Fractions]:
+    """`learn_fractions` without some of the `bands.BLOCKS` equal blocks of the window, counted once.
+
+    Returns
+    -------
+    callable
+        From the blocks that are kept, (BLOCKS,) bool, to `Fractions`.
+    """
+    cells = np.asarray(frames.cells)
+    counts = [count_move_blocks(cells, n_cells, shorter) for shorter in range(1, lag)]
+    return lambda kept: Fractions(tuple(transition_matrix(each.of(kept), estimator) for each in counts))
 
 
 def mixing_by_frame(

@@ -71,7 +71,8 @@ class FilmFrame:
             canvas.shape[0] / rows,
         )
         axes = self.figure.add_axes(box)
-        axes.set(xticks=[0, width], xlabel="x [m]", xlim=(0, width), ylim=(0, height))
+        axes.set(xlabel="x [m]", xlim=(0, width), ylim=(0, height))
+        axes.set_xticks([0, width], ["0", f"{width:g}"])
         first, last = axes.get_xticklabels()  # within the panel, clear of the next one's
         first.set_horizontalalignment("left")
         last.set_horizontalalignment("right")

@@ -92,9 +92,11 @@ def map_panels(
     return figure, panels
 
 
-def projection_note(grid: Grid) -> str:
-    """What maps of a grid add up, where its cells are not flat; else nothing."""
-    return f"Maps: {grid.projection}." if grid.projection else ""
+def left_out_note(grid: Grid, height_m: float) -> str:
+    """What maps do not show: what is above a height, and what they add up where cells are not flat."""
+    above = f"Maps end at {height_m:.3g} of {grid.shown.height_m:g} m."
+    added_up = f"Maps: {grid.projection}."
+    return " ".join([above] * (height_m < 0.999 * grid.shown.height_m) + [added_up] * bool(grid.projection))
 
 
 def cell_columns(grid: Grid, moments_s: NDArray[np.float64]) -> pd.DataFrame:

@@ -5,6 +5,7 @@ from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
+from scipy.stats import binom
 
 from bedchain.errors import UserError
 from bedchain.trajectory.cell_store import CellStore, frame_at
@@ -107,6 +108,29 @@ def observed_shares(
     batch = batch_of(store.grid, np.asarray(store.cells[start]), batch_height_m)
     frames = [frame_at(store.times_s, store.times_s[start] + moment) for moment in moments_s]
     return np.array([share_by_cell(store.cells[frame][batch], store.grid.n_cells) for frame in frames])
+
+
+def expected_total_variation(shares: NDArray[np.float64], number: int) -> float:
+    """Total-variation distance that particles drawn from a distribution over cells have from it, expected.
+
+    By the mean deviation of a binomial number from its mean, 2 n p (1 - p) times the probability of
+    floor(n p) among n - 1 (De Moivre's theorem: Diaconis and Zabell, Statist. Sci. 6 (1991) 284).
+
+    Parameters
+    ----------
+    shares : (n_cells,) array
+        Probabilities [1].
+    number : int
+        Particles drawn [1].
+
+    Returns
+    -------
+    float
+        0 to 1 [1].
+    """
+    chance = shares[shares > 0] / shares.sum()
+    deviation = 2 * chance * (1 - chance) * binom.pmf(np.floor(number * chance), number - 1, chance)
+    return float(0.5 * deviation.sum())
 
 
 def total_variation(p: NDArray[np.float64], q: NDArray[np.float64]) -> float:

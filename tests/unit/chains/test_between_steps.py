@@ -5,10 +5,17 @@ import numpy as np
 import pytest
 
 from bedchain.chains import registry
-from bedchain.chains.between_steps import Fractions, densities_at, learn_fractions, mixing_by_frame
+from bedchain.chains.between_steps import (
+    Fractions,
+    densities_at,
+    fractions_relearner,
+    learn_fractions,
+    mixing_by_frame,
+)
 from bedchain.measures.mixing import Splits, side_shares, sides
 from bedchain.trajectory.grid import Grid
 from bedchain.trajectory.synthetic import on_grid
+from bedchain.uncertainty.bands import kept_blocks, kept_steps
 from made.frames import half_remaining, kept_velocity, squared_displacement, stirred
 
 LAG, SPLITS = 4, Splits(0.025, 0.04)
@@ -87,6 +94,24 @@ def test_fractions_are_stored_beside_the_chain(bed, tmp_path):
         assert (one != other).nnz == 0
     registry.save(chain, tmp_path / "without.npz")
     assert registry.load_fractions(tmp_path / "without.npz").lag == 1
+
+
+def test_fractions_without_a_block_are_those_of_its_weights(bed):
+    frames, grid, _, fractions = bed
+    of_step = fractions_relearner(frames, grid.n_cells, LAG)
+    for kept in kept_blocks():
+        expected = learn_fractions(
+            frames,
+            grid.n_cells,
+            LAG,
+            weights=lambda lag, kept=kept: kept_steps(kept, len(frames.times_s) - lag),
+        )
+        assert of_step(kept).lag == LAG
+        for one, other, whole in zip(
+            of_step(kept).matrices, expected.matrices, fractions.matrices, strict=True
+        ):
+            np.testing.assert_allclose(one.toarray(), other.toarray(), atol=ROUND_OFF)
+            assert (one != whole).nnz > 0
 
 
 def test_between_steps_a_long_lag_is_as_good_as_at_its_steps():

@@ -5,7 +5,13 @@ import numpy as np
 import pytest
 
 from bedchain.errors import UserError
-from bedchain.measures.batch import batch_of, observed_shares, share_by_cell, total_variation
+from bedchain.measures.batch import (
+    batch_of,
+    expected_total_variation,
+    observed_shares,
+    share_by_cell,
+    total_variation,
+)
 from bedchain.trajectory.cell_store import CellStore
 from bedchain.trajectory.grid import Grid
 
@@ -38,3 +44,13 @@ def test_observed_shares_follow_the_batch_only():
 
 def test_total_variation_by_hand():
     assert total_variation(np.array([1.0, 1, 0]), np.array([0, 0.1, 0.1])) == pytest.approx(0.5)
+
+
+def test_expected_total_variation_is_the_mean_of_draws():
+    # one coin of two: 0 or 1 heads, both 1/2 off
+    assert expected_total_variation(np.array([0.5, 0.5, 0.0]), 1) == pytest.approx(0.5)
+    shares, number = np.array([0.5, 0.3, 0.199, 0.001]), 40
+    drawn = np.random.default_rng(1).multinomial(number, shares, 4000) / number
+    distances = 0.5 * np.abs(drawn - shares).sum(axis=1)
+    error = distances.std() / np.sqrt(len(distances))
+    assert expected_total_variation(shares, number) == pytest.approx(distances.mean(), abs=4 * error)

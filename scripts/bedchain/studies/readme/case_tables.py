@@ -16,6 +16,7 @@ from bedchain.measures.mixing import GROUPS
 
 PARTS = [name for _, name in GROUPS]
 MONTE_CARLO = "_monte_carlo"
+CHOSEN = "chosen"
 LONGER_LAG_S = 0.1  # that mends what the velocity forgotten at 0.025 s does
 ANOTHER_RUN = np.sqrt(2)  # rms difference of two realisations over the noise floor
 
@@ -34,6 +35,7 @@ def summary(results: Path) -> pd.DataFrame:
     low = f"{100 * value['share_mean_low', 'dem']:.0f} %"
     rows = [("particles below 0.25 m, mean over 15 to 20 s", "65 % (at 15 s)", low)]
     rows += _errors_over_another_run(results, value["realisations", "dem"])
+    rows += _error_of_choice(results, value)
     hours = claimed.loc[("dem_time", "dem")]
     rows.append(("5 s of DEM and gas", f"{hours['paper']:.0f} h", f"{hours['ours']:.2g} h"))
     for quantity, chain, words in (
@@ -59,6 +61,21 @@ def _errors_over_another_run(results: Path, realisations: float) -> list[tuple[s
         words = f"error of the {chain} chain over another DEM run's, lag {lag:g} s"
         rows.append((words, "", number(floors.iloc[np.argmin(away)] / another)))
     return rows
+
+
+def _error_of_choice(results: Path, value: "pd.Series[Any]") -> list[tuple[str, str, str]]:
+    """Row of the chosen chain, as those of the others; none where the case has none."""
+    if ("error_rms_of_mean_left", CHOSEN) not in value.index:
+        return []
+    choice = pd.read_csv(results / "choice.csv").set_index("quantity")["value"].astype(float)
+    error, floor = (
+        np.mean([value[f"{name}_{part}", source] ** 2 for part in PARTS])
+        for name, source in (("error_rms_of_mean", CHOSEN), ("noise_floor", "dem"))
+    )
+    another = 1 + 1 / value["realisations", "dem"]
+    lag_s, cell_cm = choice["lag_s"], 100 * choice["cell_m"]
+    words = f"error of the chosen chain over another DEM run's, lag {lag_s:g} s, cells of {cell_cm:.3g} cm"
+    return [(words, "", number(np.sqrt(error / floor / another)))]
 
 
 def errors(results: Path) -> pd.DataFrame:

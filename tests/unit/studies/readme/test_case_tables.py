@@ -134,6 +134,19 @@ def test_summary_is_relative_to_another_dem_run(tmp_path: Path) -> None:
     pd.DataFrame(rows, columns=names).to_csv(tmp_path / "discussion.csv", index=False)
     table = case_tables.summary(tmp_path)
     assert list(table["here"]) == ["65 %", "1.33", "0.667", "1", "0.6 h", "5000", "6"]
+    values += [(f"noise_floor_{part}", "dem", 0.3) for part in PARTS]
+    values += [(f"error_rms_of_mean_{part}", "chosen", 0.24 * np.sqrt(4 / 3)) for part in PARTS]
+    pd.DataFrame(values, columns=["quantity", "source", "value"]).to_csv(
+        tmp_path / "metrics.csv", index=False
+    )
+    pd.DataFrame([("lag_s", 0.3), ("cell_m", 0.03)], columns=["quantity", "value"]).to_csv(
+        tmp_path / "choice.csv", index=False
+    )
+    table = case_tables.summary(tmp_path)
+    assert list(table["here"]) == ["65 %", "1.33", "0.667", "1", "0.8", "0.6 h", "5000", "6"]
+    assert (
+        table["quantity"][4] == "error of the chosen chain over another DEM run's, lag 0.3 s, cells of 3 cm"
+    )
 
 
 def test_claims_keep_their_reasons(tmp_path: Path) -> None:
