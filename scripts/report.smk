@@ -2,7 +2,7 @@
 # The report of a run: one page of all figures, films and tables of its beds, with their captions.
 import re
 
-REPORT_FILES = [*BED_FILES, *(rules.paper_all.input if WITH_PAPER else [])]
+REPORT_FILES = [*CASE_FILES, *(rules.paper_all.input if WITH_PAPER else [])]
 # regular expression of the names of a rule's figures -> their caption
 CAPTIONS = {
     re.sub(

@@ -12,7 +12,12 @@ from bedchain.stage import LOG, run_stage
 
 
 def write_provenance(
-    case: Case, dem: Path, metrics: Path | list[Path], timing: Path, benchmarks: Path, provenance: Path
+    case: Case,
+    metrics: Path | list[Path],
+    benchmarks: Path,
+    provenance: Path,
+    dem: Path | None = None,
+    timing: Path | None = None,
 ) -> None:
     """Write versions, commit, case, seeds, machine, and what each job took.
 
@@ -20,18 +25,19 @@ def write_provenance(
     ----------
     case : dict
         The case with its defaults, without the looks of its figures.
-    dem, metrics, timing : Path
+    metrics, dem, timing : Path
         Files that the results rest on; their SHA-256 are noted. Of imported frames ``trajectory.json``
-        stands in place of dem.json; of tracers there are no metrics.
+        stands in place of dem.json; of tracers there are no metrics, of a network nothing else.
     benchmarks : Path
         Folder of Snakemake's benchmark files.
     provenance : Path
         JSON file to make.
     """
     inputs = {"dem": dem, "metrics": metrics, "timing": timing}
+    drawn = case["chain" if "chain" in case else "network"]
     record = {
         "case": {"sha256": case_hash(case), "values": case},
-        "seeds": {"particles": case.get("seed"), "chain": case["chain"]["seed"]},
+        "seeds": {"particles": case.get("seed"), "chain": drawn["seed"]},
         "git": git_state(),
         "packages": {"debian": debian_packages(), "python": python_packages()},
         "machine": machine(),

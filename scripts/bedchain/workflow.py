@@ -11,10 +11,12 @@ from typing import Any
 from bedchain.case.chosen import AUTO, is_auto, with_choice
 from bedchain.case.load import load_case, with_new_names
 from bedchain.case.names import case_name_problem, is_name
+from bedchain.case.network_checks import NETWORK
 from bedchain.case.parameters import solver_parameters
 from bedchain.case.presets import preset_named, read_presets, with_preset
 from bedchain.case.scene_checks import used_keys
 from bedchain.case.schema import Case, load_schema
+from bedchain.chains.networks.page import chains_of, starts_and_exits
 from bedchain.command_line.peers import peers_options
 from bedchain.command_line.targets import check_options, check_targets
 from bedchain.command_line.words import as_typed, check_words
@@ -117,8 +119,12 @@ def case_or_exit(name: str, preset: str | None = None) -> Case:
         if problem := case_name_problem(name, known, read_presets()):
             raise UserError(problem)
         measure = partial(measured_sections, cache=Path("results") / name / "frames.json")
-        case = load_case(CASES / name / "case.yaml", measure=measure)
+        case = load_case(file := CASES / name / "case.yaml", measure=measure)
         preset = preset or case.get("preset")
+        if NETWORK in case:
+            if preset:
+                raise UserError(f"{file} is a network, whose chains are written down: leave preset= out")
+            chains_of(case[NETWORK], str(file))
         return with_preset(case, preset_named(preset)) if preset else case
 
 
@@ -148,12 +154,26 @@ def reference_or_exit(wanted: str | None, name: str, case: Case) -> Path | None:
     with report_user_errors():
         if wanted not in (None, "archive", "simulate"):
             raise UserError(f"--config reference={wanted}: take archive or simulate")
+        if wanted and NETWORK in case:
+            raise UserError(f"the case {name} is a network, which has no particles: leave reference= out")
         if wanted == "simulate" or (wanted is None and not folder.exists()):
             return None
         if not folder.exists():
             raise UserError(f"the case {name} has no archive, {folder}: leave the word out, {SIMULATE}")
         check_archive(folder, case, load_schema())
     return folder
+
+
+def network_figures(section: Case) -> list[str]:
+    """Figures of a case that is a network, by what its page has."""
+    opened, placed = starts_and_exits(section)
+    return [
+        "fig_states",
+        *(["fig_residence"] if opened else []),
+        *(["fig_path"] if placed else []),
+        *(["fig_pulses"] if section["moments_s"] and placed else []),
+        *(["fig_mixtures"] if section["mixtures"] else []),
+    ]
 
 
 def frame_files(name: str, case: Case) -> list[str]:

@@ -10,6 +10,7 @@ from bedchain.case import (  # noqa: F401
     frame_checks,
     gas_checks,
     mark_checks,
+    network_checks,
     scene_checks,
     size_checks,
     stage_checks,

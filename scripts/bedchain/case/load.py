@@ -14,6 +14,7 @@ from jsonschema.exceptions import ValidationError
 from bedchain.case.checks import physical_problems
 from bedchain.case.chosen import AUTO
 from bedchain.case.frame_checks import FRAMES, simulation_problems, with_measured
+from bedchain.case.network_checks import NETWORK, bed_problems, network_schema
 from bedchain.case.scene_checks import checked_keys
 from bedchain.case.schema import SCHEMA_FILE, Case, Schema, case_value, load_schema, schema_keys
 from bedchain.case.strict_yaml import Lines, read_yaml
@@ -61,7 +62,11 @@ def load_case(
     data = with_new_names(data, str(file))
     if data.get("cells") == AUTO:
         data["cells"] = {}
-    if FRAMES in data:
+    if NETWORK in data:
+        if problems := bed_problems(data, schema["properties"], lines):
+            raise CaseError(file, problems)
+        schema = network_schema(schema)
+    elif FRAMES in data:
         data, schema = _with_frames(data, schema, lines, file, measure)
     errors = Draft202012Validator(schema).iter_errors(data)
     problems = list(dict.fromkeys(problem for error in errors for problem in _explain(error, schema, lines)))
@@ -129,10 +134,13 @@ def _with_defaults(data: Any, schema: Schema) -> Any:
         return int(data)
     if _kind(schema) == "number" and isinstance(data, int) and not isinstance(data, bool):
         return float(str(data))  # infinite beyond 1e308, which the schema refuses
+    items = schema.get("items", {})
+    if isinstance(data, list) and items.get("type") == "object":
+        return [_with_defaults(item, items) for item in data]
     if schema.get("type") != "object" or not isinstance(data, dict):
         return data
     filled = dict(data)
-    for name, part in schema["properties"].items():
+    for name, part in schema.get("properties", {}).items():
         if name in data or "default" in part:
             filled[name] = _with_defaults(data.get(name, part.get("default")), part)
     return filled
@@ -161,7 +169,8 @@ def _explain(error: ValidationError, schema: Schema, lines: Lines) -> list[Probl
         missing = [name for name in part["required"] if name not in given]
         return [_missing(_join(path, name), part["properties"][name], lines.get(path)) for name in missing]
     wrong, remedy = _wrong_value(error)
-    return [Problem(path or "(file)", wrong, remedy, lines.get(path.split("[")[0]))]
+    line = lines.get(path, lines.get(path.split("[")[0]))
+    return [Problem(path or "(file)", wrong, remedy, line)]
 
 
 def _unknown(path: str, name: str, known: Schema, schema: Schema, lines: Lines) -> Problem:

@@ -81,6 +81,23 @@ class OpenChain:
         first, second = (float(weight @ moment) for moment in self.moments())
         return self.lag_s * first, self.lag_s**2 * (second - first**2)
 
+    def residence_by_exit(self) -> Array:
+        """Mean [s] and variance [s2] of the residence time of what leaves by each exit, (n_exits, 2).
+
+        With h the probability to leave by the exit from each state, ``(I - Q) x = h`` is the mean of the
+        steps where that exit is taken, 0 else, and ``(I - Q) y = 2 x - h`` that of their squares.
+        """
+        factors, weight = splu(self._left()), self.feed / self.feed.sum()
+        rows = []
+        for leaving in self.exits.T:
+            chance = factors.solve(leaving)
+            first = factors.solve(chance)
+            second = factors.solve(2 * first - chance)
+            with np.errstate(invalid="ignore", divide="ignore"):  # of an exit that nothing takes
+                mean, square = weight @ first / (weight @ chance), weight @ second / (weight @ chance)
+            rows.append((self.lag_s * mean, self.lag_s**2 * (square - mean**2)))
+        return np.array(rows)
+
     def left_by(self, steps: int) -> Array:
         """F: share of what is fed that has left by each exit after 0, 1, ... steps, (steps + 1, n_exits)."""
         now, left = self.feed / self.feed.sum(), np.zeros((steps + 1, self.exits.shape[1]))

@@ -52,18 +52,25 @@ def bed_section(folder: Path, captions: dict[str, Path], figures: list[Path]) ->
     Returns
     -------
     dict
-        name, title, machine, commit, outcome and table (html), figures (name, caption, kind, data).
+        name, title, machine, commit, whether its chains are written down, outcome and table (html), figures
+        (name, caption, kind, data).
     """
     record = json.loads((folder / "provenance.json").read_text(encoding="utf-8"))
     claims = folder / "agreement.csv"
+    if written := "network" in record["case"]["values"]:
+        outcome, table = network_table(folder / "metrics.csv"), ""
+    else:
+        outcome = claims_table(claims) if claims.exists() else outcome_table(folder / "metrics.csv")
+        table = (folder / "table1.html").read_text(encoding="utf-8")
     return {
         "name": folder.name,
         "title": record["case"]["values"]["title"],
         "machine": f"{record['machine']['processor']}, {record['machine']['cores']} cores",
         "commit": (record["git"]["commit"] or "no commit")[:12],
         "claimed": claims.exists(),
-        "outcome": (claims_table(claims) if claims.exists() else outcome_table(folder / "metrics.csv")),
-        "table": (folder / "table1.html").read_text(encoding="utf-8"),
+        "written": written,
+        "outcome": outcome,
+        "table": table,
         "figures": [embedded(figure, captions) for figure in figures],
     }
 
@@ -93,6 +100,16 @@ def outcome_table(file: Path) -> str:
     metrics["source"] = metrics["source"].str.replace("_", " ")
     metrics["value"] = metrics["value"].map("{:.3g}".format)
     wide = metrics.pivot(index=["what", "source"], columns="group", values="value").fillna("")
+    return wide.reset_index().rename_axis(None, axis=1).to_html(index=False, border=0)
+
+
+def network_table(file: Path) -> str:
+    """Numbers of a network, of metrics.csv, as html: a column a chain, without single revolutions."""
+    metrics = pd.read_csv(file)
+    metrics = metrics[~metrics["quantity"].str.contains(r"(?:variance|index)_\d+$")]
+    metrics["value"] = metrics["value"].map("{:.6g}".format)
+    wide = metrics.pivot(index=["quantity", "unit"], columns="source", values="value").fillna("")
+    wide = wide.reindex(columns=list(dict.fromkeys(metrics["source"])))
     return wide.reset_index().rename_axis(None, axis=1).to_html(index=False, border=0)
 
 

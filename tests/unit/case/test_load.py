@@ -10,6 +10,7 @@ from bedchain.physics.whole_numbers import is_multiple
 from made import ROOT
 from made.case_text import END, assert_refused, changed_case
 
+ELSEWHERE = ("frames.", "network.")  # other sources than a simulation
 OPTIONAL = ("preset", "outside", "marks", "cells.layers", "cells.form", "cells.axis")
 
 
@@ -17,7 +18,7 @@ OPTIONAL = ("preset", "outside", "marks", "cells.layers", "cells.form", "cells.a
 def test_shipped_cases_load_with_every_key(name):
     case = load_case(ROOT / "cases" / name / "case.yaml")
     for key in schema_keys(load_schema()):
-        if key in OPTIONAL or key.startswith("frames.") or (key.startswith("drum.") and name != "drum"):
+        if key in OPTIONAL or key.startswith(ELSEWHERE) or (key.startswith("drum.") and name != "drum"):
             continue  # of their own accord only
         assert case_value(case, key) is not None, key
 

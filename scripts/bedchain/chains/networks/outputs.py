@@ -1,0 +1,251 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""What a network says, as tables: numbers, contents, residence times, pulses, a path, mixtures."""
+
+from collections.abc import Iterator, Mapping
+from typing import Any, NamedTuple
+
+import numpy as np
+import pandas as pd
+from numpy.typing import NDArray
+
+from bedchain.chains.networks import checks
+from bedchain.chains.networks.mixer import check_filling
+from bedchain.chains.networks.mixture import mixture_table
+from bedchain.chains.networks.page import PageChain
+from bedchain.errors import UserError
+
+Array = NDArray[np.float64]
+# F is followed until this share has left, at most so many steps
+MOST_LEFT, MOST_STEPS = 0.999, 20_000
+# rows of F and E in the table, steps of the Monte Carlo, eigenvalues
+ROWS, DRAWN_STEPS, EIGENVALUES = 400, 400, 4
+ROUND_OFF = 1e-12
+# pulses of at most so many states are numbers too
+SMALL = 12
+# particles that a path is chosen from
+PATHS = 50
+
+
+class Row(NamedTuple):
+    """A number of a table of metrics."""
+
+    quantity: str
+    value: float
+    unit: str
+
+
+def metrics_table(chain: PageChain, particles: int, seed: int) -> pd.DataFrame:
+    """Numbers of a chain: quantity, source, value, unit, ci_low, ci_high.
+
+    Parameters
+    ----------
+    chain : PageChain
+    particles, seed : int
+        Of the Monte Carlo.
+    """
+    rows = [Row("row_sum_error", checks.row_sum_error(chain.network), "1")]
+    rows += _open_numbers(chain) if chain.network.is_open else _closed_numbers(chain)
+    steps = min(DRAWN_STEPS, horizon(chain))
+    rows.append(Row("monte_carlo_sigmas", checks.monte_carlo_sigmas(chain, steps, particles, seed), "1"))
+    rows += [
+        Row(name, value, "s" if name.startswith("residence") else "1") for name, value in chain.theory.items()
+    ]
+    table = pd.DataFrame(rows)
+    table.insert(1, "source", chain.name)
+    return table.assign(ci_low=np.nan, ci_high=np.nan)
+
+
+def _open_numbers(chain: PageChain) -> Iterator[Row]:
+    network, sums = chain.network, chain.network.open_chain
+    mean, variance = sums.residence()
+    yield Row("residence_mean", mean, "s")
+    yield Row("residence_variance", variance, "s2")
+    yield Row("throughput", sums.throughput / network.step_s, "1/s")
+    yield Row("contents", float(sums.hold_up().sum()), "1")
+    if len(network.exits) > 1:
+        for name, share, moments in zip(
+            network.exits, sums.exit_shares(), sums.residence_by_exit(), strict=True
+        ):
+            yield Row(f"exit_share_{name}", share, "1")
+            yield Row(f"residence_mean_{name}", moments[0], "s")
+            yield Row(f"residence_variance_{name}", moments[1], "s2")
+    if network.carries:
+        yield Row("hold_up_error", checks.hold_up_error(network), "1")
+        yield Row("danckwerts_error", checks.danckwerts_error(network), "1")
+
+
+def _closed_numbers(chain: PageChain) -> Iterator[Row]:
+    network = chain.network
+    values = network.modes(min(EIGENVALUES, len(network.states) - 1)).eigenvalues
+    for place, value in enumerate(values, 1):
+        yield Row(f"eigenvalue_{place}", float(value.real), "1")
+        if abs(value.imag) > ROUND_OFF:
+            yield Row(f"eigenvalue_{place}_imaginary", float(value.imag), "1")
+
+
+def states_table(chain: PageChain) -> pd.DataFrame:
+    """Contents of the steady state: chain, state, zone, height_m, declared, content."""
+    network = chain.network
+    content = network.open_chain.hold_up() if network.is_open else network.long_run(checks.start_of(chain))
+    declared = network.contents if network.carries else np.nan  # those of a closed chain are capacities
+    return _state_columns(chain).assign(declared=declared, content=content)
+
+
+def moves_table(chain: PageChain) -> pd.DataFrame:
+    """Probabilities of a step (of a cycle, of the whole of it): chain, from, to, probability_1."""
+    names = np.array([*chain.network.names, *chain.network.exits])
+    matrix = chain.network.product.tocoo()
+    table = pd.DataFrame({"from": names[matrix.row], "to": names[matrix.col], "probability_1": matrix.data})
+    table.insert(0, "chain", chain.name)
+    return table
+
+
+def horizon(chain: PageChain) -> int:
+    """Steps after which nearly all of the feed has left, or of a closed chain ten cycles."""
+    network = chain.network
+    if not network.is_open:
+        return 10 * len(network.cycle)
+    mean, variance = network.open_chain.residence()
+    tail = mean + np.log(1 / (1 - MOST_LEFT)) * np.sqrt(max(variance, 0.0))
+    return int(np.clip(np.ceil(tail / network.step_s), 2, MOST_STEPS))
+
+
+def residence_table(chain: PageChain) -> pd.DataFrame:
+    """F and E by exit: chain, exit, time_s, left_share_1, leaving_rate_1_s."""
+    network, steps = chain.network, horizon(chain)
+    left = network.open_chain.left_by(steps)
+    every = max(1, -(-steps // ROWS))
+    at = np.arange(0, steps + 1, every)
+    rate = np.diff(left[at], axis=0, prepend=left[:1]) / (every * network.step_s)
+    parts = [
+        pd.DataFrame(
+            {
+                "exit": name,
+                "time_s": network.step_s * at,
+                "left_share_1": left[at, place],
+                "leaving_rate_1_s": rate[:, place],
+            }
+        )
+        for place, name in enumerate(network.exits)
+    ]  # fmt: skip
+    return _named(chain, pd.concat(parts, ignore_index=True))
+
+
+def pulses_table(chain: PageChain, moments_s: list[float]) -> pd.DataFrame:
+    """Contents at the steps next to moments after the start, with the columns of `states_table` and times."""
+    network, parts = chain.network, []
+    steps = [round(moment / network.step_s) for moment in moments_s]
+    contents = network.expected(checks.start_of(chain), max(steps))
+    for moment, step in zip(moments_s, steps, strict=True):
+        columns = _state_columns(chain)
+        columns.insert(1, "moment_s", moment)
+        columns.insert(2, "time_s", step * network.step_s)
+        parts.append(columns.assign(declared=network.contents, content=contents[step, : len(network.states)]))
+    return pd.concat(parts, ignore_index=True)
+
+
+def pulse_metrics(chain: PageChain, table: pd.DataFrame) -> pd.DataFrame:
+    """Numbers of the pulses of small chains with a start: content by moment and state."""
+    if chain.start is None or len(chain.network.states) > SMALL:
+        return pd.DataFrame(columns=["quantity", "source", "value", "unit", "ci_low", "ci_high"])
+    names = [f"content_{row.time_s:g}_{row.state}" for row in table.itertuples()]
+    numbers = pd.DataFrame({"quantity": names, "source": chain.name, "value": table["content"], "unit": "1"})
+    return numbers.assign(ci_low=np.nan, ci_high=np.nan)
+
+
+def path_table(chain: PageChain, steps: int, seed: int) -> pd.DataFrame:
+    """Path of one particle: chain, time_s, state, zone, height_m; it ends where the particle leaves.
+
+    Of several particles the one whose stay is nearest to the mean is shown, so that the path is a usual one.
+    """
+    network, rng = chain.network, np.random.default_rng(seed)
+    amount = network.feed if network.is_open else checks.start_of(chain)
+    begin = rng.choice(len(amount), PATHS, p=amount / amount.sum())
+    walked = np.array([states.copy() for states in network.walk(begin, steps, rng)])
+    stays = (walked < len(network.states)).sum(axis=0)
+    usual = network.open_chain.residence()[0] / network.step_s if network.is_open else steps
+    path = walked[: int(stays.max()), int(np.argmin(np.abs(stays - usual)))]
+    path = path[path < len(network.states)]
+    columns = _state_columns(chain).iloc[path].reset_index(drop=True)
+    columns.insert(1, "time_s", network.step_s * np.arange(len(path)))
+    return columns
+
+
+def mixtures_table(mixture: Mapping[str, Any], chains: Mapping[str, PageChain], place: str) -> pd.DataFrame:
+    """A mixture over the cycles of its chains: mixture, quantity, revolution, time_s, value.
+
+    Parameters
+    ----------
+    mixture : mapping
+        Of a page: name, key, others, revolutions, particles.
+    chains : mapping of str to PageChain
+    place : str
+        The case's file, for messages.
+
+    Raises
+    ------
+    UserError
+        A state holds more than its capacity.
+    """
+    key = chains[mixture["key"]]
+    cycle, network = len(key.network.cycle), key.network
+    steps = cycle * mixture["revolutions"]
+    contents = {
+        name: chains[name].network.expected(checks.start_of(chains[name]), steps)
+        for name in [mixture["key"], *mixture["others"]]
+    }
+    total = np.sum(list(contents.values()), axis=0)
+    capacity = network.contents
+    try:
+        check_filling(total / capacity, network.names)
+    except UserError as error:
+        raise UserError(f"{place}, mixture {mixture['name']}: {error}") from None
+    times = network.step_s * cycle * np.arange(mixture["revolutions"] + 1)
+    table = mixture_table(
+        contents[mixture["key"]][::cycle], total[::cycle], capacity, mixture["particles"], times
+    )
+    table.insert(0, "mixture", mixture["name"])
+    return table
+
+
+def mixture_metrics(table: pd.DataFrame, limit: float) -> pd.DataFrame:
+    """Numbers of a mixture: its variances over that of the start, their limit, and the best revolution."""
+    name = str(table["mixture"].iloc[0])
+    rows = [
+        Row(f"{row.quantity}_{row.revolution}", row.value, "1")
+        for row in table[table["quantity"].isin(["content_variance", "lacey_index"])].itertuples()
+    ]
+    curve = table[table["quantity"] == "content_variance"].set_index("revolution")["value"]
+    rows.append(Row("content_variance_limit", limit, "1"))
+    rows.append(Row("best_revolutions", float(curve[curve <= curve.min() * (1 + ROUND_OFF)].index[0]), "1"))
+    metrics = pd.DataFrame(rows)
+    metrics.insert(1, "source", name)
+    return metrics.assign(ci_low=np.nan, ci_high=np.nan)
+
+
+def limit_of(chain: PageChain) -> float:
+    """Variance of a closed chain's content in the long run over that of its start [1]."""
+    start, volume = checks.start_of(chain), chain.network.contents
+    filled = [contents / volume for contents in (chain.network.long_run(start), start)]
+    weight = volume / volume.sum()
+    last, first = (float(weight @ (values - weight @ values) ** 2) for values in filled)
+    return last / first
+
+
+def _state_columns(chain: PageChain) -> pd.DataFrame:
+    states = chain.network.states
+    return _named(
+        chain,
+        pd.DataFrame(
+            {
+                "state": [state.name for state in states],
+                "zone": [state.zone for state in states],
+                "height_m": [state.height_m for state in states],
+            }
+        ),
+    )
+
+
+def _named(chain: PageChain, table: pd.DataFrame) -> pd.DataFrame:
+    table.insert(0, "chain", chain.name)
+    return table

@@ -1,0 +1,44 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Contents that follow a start, over height, at some moments."""
+
+from pathlib import Path
+
+import numpy as np
+import pandas as pd
+from matplotlib import pyplot as plt
+
+from bedchain.figures.network_styles import DASHES, figure_legend, panels_of, with_text
+from bedchain.figures.style import FigureFiles, figure_style
+from bedchain.files import write_csv
+from bedchain.stage import run_stage
+
+
+def plot_network_pulses(pulses: Path, files: FigureFiles) -> None:
+    """Draw the contents of every chain, a colour a moment and a dash a zone.
+
+    Parameters
+    ----------
+    pulses : Path
+        ``pulses.csv`` of run_network.
+    files : FigureFiles
+        Figure in two forms, and the numbers behind it.
+    """
+    table = with_text(pd.read_csv(pulses), "zone").dropna(subset="height_m")
+    zones = list(dict.fromkeys(table["zone"]))
+    times = sorted(set(table["moment_s"]))
+    colours = dict(zip(times, plt.get_cmap("viridis")(np.linspace(0, 0.9, len(times))), strict=True))
+    with figure_style():
+        figure, panels = panels_of(list(dict.fromkeys(table["chain"])))
+        for axes, (_, part) in zip(panels, table.groupby("chain", sort=False), strict=True):
+            for (time, zone), states in part.groupby(["moment_s", "zone"], sort=False):
+                dash = DASHES[zones.index(zone) % len(DASHES)]
+                label = f"{time:.3g} s" if zone == zones[0] else None
+                axes.plot(states["content"], states["height_m"], color=colours[time], ls=dash, label=label)
+            axes.set(xlabel="content of the start", ylabel="height [m]", xlim=(0, None), ylim=(0, None))
+        figure_legend(figure, panels)
+        files.save(figure)
+    write_csv(table, files.csv)
+
+
+if rule := globals().get("snakemake"):
+    run_stage(plot_network_pulses, rule)

@@ -1,0 +1,68 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Tables of a network."""
+
+import numpy as np
+import pytest
+
+from bedchain.chains.networks import outputs
+from bedchain.chains.networks.mixer import loaded, static_mixer
+from bedchain.chains.networks.page import PageChain
+from bedchain.chains.networks.riser import Exchange, riser_steps
+from bedchain.errors import UserError
+
+
+@pytest.fixture(scope="module")
+def riser():
+    return PageChain("riser", riser_steps(3, Exchange(0, 0, 0.1, 0.2, 0)), None, {})
+
+
+@pytest.fixture(scope="module")
+def mixers():
+    networks = [static_mixer(10, 1, 10, 0.35, 0.25, 0.0), static_mixer(10, 1, 10, 0.3, 0.3, 0.0)]
+    starts = [loaded(10, 1, "top", 0.5), loaded(10, 1, "bottom", 0.5)]
+    return {
+        name: PageChain(name, *pair, {})
+        for name, pair in zip("ab", zip(networks, starts, strict=True), strict=True)
+    }
+
+
+def test_residence_rises_to_nearly_all_and_its_rate_is_its_slope(riser):
+    table = outputs.residence_table(riser)
+    left = table["left_share_1"].to_numpy()
+    assert (np.diff(left) >= 0).all() and left[0] == 0 and left[-1] > 0.99
+    np.testing.assert_allclose(table["leaving_rate_1_s"].sum(), left[-1])
+
+
+def test_states_are_declared_and_computed(riser, mixers):
+    table = outputs.states_table(riser)
+    np.testing.assert_allclose(table["content"], table["declared"])
+    closed = outputs.states_table(mixers["a"])
+    assert closed["declared"].isna().all() and closed["content"].sum() == pytest.approx(2.5)
+
+
+def test_pulses_are_at_the_steps_next_to_the_moments(riser):
+    table = outputs.pulses_table(riser, [0.0, 1.4])
+    assert sorted(set(table["time_s"])) == [0, 1] and table["content"].sum() == pytest.approx(2)
+
+
+def test_a_path_ends_where_the_particle_leaves(riser):
+    path = outputs.path_table(riser, 60, 1)
+    assert path["state"].iloc[0] == "core 1" and path["state"].iloc[-1] == "core 3"
+    assert len(path) == pytest.approx(4.2, abs=1.5)
+
+
+def test_mixture_has_its_best_revolution_below_the_limit(mixers):
+    mixture = {"name": "m", "key": "a", "others": ["b"], "revolutions": 8, "particles": 100.0}
+    table = outputs.mixtures_table(mixture, mixers, "x")
+    limit = outputs.limit_of(mixers["a"])
+    numbers = outputs.mixture_metrics(table, limit).set_index("quantity")["value"]
+    assert numbers["best_revolutions"] == 5 and numbers["content_variance_5"] < limit == pytest.approx(
+        0.029252, abs=1e-6
+    )
+
+
+def test_an_overfull_mixture_names_file_and_mixture(mixers):
+    full = {name: chain._replace(start=2 * chain.start) for name, chain in mixers.items()}
+    mixture = {"name": "m", "key": "a", "others": ["b"], "revolutions": 8, "particles": 100.0}
+    with pytest.raises(UserError, match="x, mixture m: column 1 row . holds"):
+        outputs.mixtures_table(mixture, full, "x")
