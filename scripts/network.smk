@@ -2,9 +2,13 @@
 # A case that is a network: its chains are built and run in one job, seconds; then its figures.
 
 
+from bedchain.workflow import network_inputs
+
+
 rule run_network:
     input:
         code("run_network"),
+        network_inputs(NAME, CASE["network"]),
     output:
         **NETWORK_TABLES,
         metrics=f"{RESULTS}/metrics.csv",
@@ -45,6 +49,11 @@ FIGURE_RULES = {
     "plot_network_path": {"name": "fig_path", "input": {"path": NETWORK_TABLES["path"]}},
     "plot_network_pulses": {"name": "fig_pulses", "input": {"pulses": NETWORK_TABLES["pulses"]}},
     "plot_network_mixtures": {"name": "fig_mixtures", "input": {"mixtures": NETWORK_TABLES["mixtures"]}},
+    "plot_network_axial": {"name": "fig_axial", "input": {"axial": NETWORK_TABLES["axial"]}},
+    "plot_network_conversion": {
+        "name": "fig_conversion",
+        "input": {"conversion": NETWORK_TABLES["conversion"]},
+    },
 }
 
 

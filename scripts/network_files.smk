@@ -3,7 +3,8 @@
 from bedchain.workflow import network_figures
 
 NETWORK_TABLES = {
-    name: f"{RESULTS}/{name}.csv" for name in ["states", "residence", "pulses", "path", "mixtures", "moves"]
+    name: f"{RESULTS}/{name}.csv"
+    for name in ["states", "residence", "pulses", "path", "mixtures", "moves", "axial", "conversion"]
 }
 CASE_FILES = [
     *expand(f"{FIGURES}/{{name}}{{form}}", name=network_figures(CASE["network"]), form=FORMS.values()),

@@ -6,8 +6,9 @@ from pathlib import Path
 import numpy as np
 import pandas as pd
 from matplotlib import pyplot as plt
+from matplotlib.lines import Line2D
 
-from bedchain.figures.network_styles import DASHES, figure_legend, panels_of, with_text
+from bedchain.figures.network_styles import DASHES, panels_of, with_text
 from bedchain.figures.style import FigureFiles, figure_style
 from bedchain.files import write_csv
 from bedchain.stage import run_stage
@@ -32,10 +33,11 @@ def plot_network_pulses(pulses: Path, files: FigureFiles) -> None:
         for axes, (_, part) in zip(panels, table.groupby("chain", sort=False), strict=True):
             for (time, zone), states in part.groupby(["moment_s", "zone"], sort=False):
                 dash = DASHES[zones.index(zone) % len(DASHES)]
-                label = f"{time:.3g} s" if zone == zones[0] else None
-                axes.plot(states["content"], states["height_m"], color=colours[time], ls=dash, label=label)
+                axes.plot(states["content"], states["height_m"], color=colours[time], ls=dash)
             axes.set(xlabel="content of the start", ylabel="height [m]", xlim=(0, None), ylim=(0, None))
-        figure_legend(figure, panels)
+        handles = [Line2D([], [], color=colours[time]) for time in times]
+        labels = [f"{time:.3g} s" for time in times]
+        figure.legend(handles, labels, loc="outside lower center", ncols=min(8, len(times)))
         files.save(figure)
     write_csv(table, files.csv)
 

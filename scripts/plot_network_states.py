@@ -44,9 +44,8 @@ def plot_network_states(states: Path, files: FigureFiles) -> None:
 
 def over_height(axes: Axes, part: pd.DataFrame, colours: dict[str, str]) -> None:
     """Contents of a chain over the height of its states."""
-    usual = max(
-        states["content"].max() for _, states in part.groupby("zone") if len(states) > 1 or len(part) == 1
-    )
+    columns = [states["content"].max() for _, states in part.groupby("zone") if len(states) > 1]
+    usual = max(columns, default=part["content"].max())
     for zone, states in part.groupby("zone", sort=False):
         alone = "D" if len(states) == 1 else ""
         axes.plot(
@@ -55,6 +54,7 @@ def over_height(axes: Axes, part: pd.DataFrame, colours: dict[str, str]) -> None
         rings = states.iloc[:: max(1, len(states) // RINGS)]
         axes.plot(rings["declared"], rings["height_m"], "o", mfc="none", color=colours[zone], ms=6, mew=0.6)
     axes.set(xlabel="content [declared unit]", ylabel="height [m]", ylim=(0, None))
+    axes.locator_params(axis="x", nbins=4)
     if part["content"].max() > FAR * usual:
         axes.set_xscale("log")
     else:

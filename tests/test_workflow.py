@@ -12,6 +12,7 @@ from bedchain.trajectory.archive import solver_keys
 from made import ROOT
 from made.workflow import ALL, BED, SCORES, TRADEOFF, linked, plan, snakemake
 
+KNOWN = sorted(file.parent.name for file in (ROOT / "cases").glob("*/case.yaml"))
 STUB = 'for file in snakemake.output:\n    open(file, "w").write("{script} for " + snakemake.rule)\n'
 
 
@@ -107,7 +108,7 @@ def test_a_scene_without_gas_asks_for_nothing_of_openfoam(tmp_path):
 
 def test_an_unknown_case_or_preset_is_answered_by_the_known_ones(empty, refused):
     message = refused(empty, case="shorter")
-    assert "there is no case 'shorter'" in message and "drum, mueller, paper, short" in message
+    assert "there is no case 'shorter'" in message and ", ".join(KNOWN) in message
     (empty / "cases" / "presets.yaml").write_text("fast: {cell_m: 0.02, lag_s: 0.2, model: static}\n")
     message = refused(empty, preset="fats")
     assert "there is no preset 'fats'" in message and "take one of fast" in message
@@ -138,6 +139,25 @@ def test_a_case_may_be_named_by_a_number(empty, name):
     assert (empty / file).exists() == (not dry_run)
 
 
+def test_a_network_asks_for_nothing_of_a_bed(empty):
+    jobs = plan(empty, case="riser").jobs
+    figures = {f"plot_network_{name}" for name in ("states", "residence", "path", "pulses")}
+    assert set(jobs) == {"run_network", "write_provenance", "write_report"} | figures
+
+
+def test_a_network_that_cannot_be_ends_before_any_job(empty, refused):
+    page = (ROOT / "cases" / "elutriation" / "case.yaml").read_text(encoding="utf-8")
+    (empty / "cases" / "leaky").mkdir()
+    (empty / "cases" / "leaky" / "case.yaml").write_text(page.replace("flow: 0.13", "flow: 0.12"))
+    message = refused(empty, case="leaky")
+    assert message.startswith(
+        "error: cases/leaky/case.yaml, chain fines with cyclone: the flows of bed do not balance"
+    )
+    for word in ({"preset": "fast"}, {"reference": "simulate"}):
+        message = refused(empty, case="riser", **word)
+        assert "network" in message and "leave" in message and message.count("\n") == 1
+
+
 def test_a_preset_may_be_named_by_a_number(empty):
     (empty / "cases" / "presets.yaml").write_text('"0700": {cell_m: 0.02, lag_s: 0.2, model: static}\n')
     done = snakemake(empty, "--dry-run", "results/short-0700/cells.npz", "--config", "preset=0700")
@@ -149,7 +169,7 @@ def test_a_refusal_is_one_message_and_an_old_word_one_hint(empty):
     assert done.returncode == 1 and "Traceback" not in done.stderr + done.stdout
     assert done.stderr.splitlines() == [
         "hint: --config: fidelity is now called preset",
-        "error: there is no case 'shorter': take --config case=NAME with one of drum, mueller, paper, short; "
+        f"error: there is no case 'shorter': take --config case=NAME with one of {', '.join(KNOWN)}; "
         "did you mean short?",
     ]
 

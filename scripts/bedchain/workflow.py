@@ -166,14 +166,27 @@ def reference_or_exit(wanted: str | None, name: str, case: Case) -> Path | None:
 
 def network_figures(section: Case) -> list[str]:
     """Figures of a case that is a network, by what its page has."""
-    opened, placed = starts_and_exits(section)
+    opened, placed = starts_and_exits(section, CASES)
     return [
         "fig_states",
         *(["fig_residence"] if opened else []),
         *(["fig_path"] if placed else []),
-        *(["fig_pulses"] if section["moments_s"] and placed else []),
+        *(
+            ["fig_pulses"]
+            if placed and (section["moments_s"] or any("moments_s" in chain for chain in section["chains"]))
+            else []
+        ),
         *(["fig_mixtures"] if section["mixtures"] else []),
+        *(["fig_axial"] if "axial" in section else []),
+        *(["fig_conversion"] if "conversion" in section else []),
     ]
+
+
+def network_inputs(name: str, section: Case) -> list[str]:
+    """Files that a network page names: cases of beds, and curves to stand beside its own."""
+    beds = {chain["bubbling_bed"]["case"] for chain in section["chains"] if "bubbling_bed" in chain}
+    beside = [str(CASES / name / section["axial"]["beside"])] if "axial" in section else []
+    return [*(str(CASES / bed / "case.yaml") for bed in sorted(beds)), *beside]
 
 
 def frame_files(name: str, case: Case) -> list[str]:

@@ -10,6 +10,8 @@ from bedchain.case.load import load_case
 from bedchain.comparison.expected import deviations, read_expected
 from made import ROOT
 from made.drawings import DPI, OnlyChecked
+from plot_network_axial import plot_network_axial
+from plot_network_conversion import plot_network_conversion
 from plot_network_mixtures import plot_network_mixtures
 from plot_network_path import plot_network_path
 from plot_network_pulses import plot_network_pulses
@@ -26,6 +28,8 @@ PLOTS = {
     "path": plot_network_path,
     "pulses": plot_network_pulses,
     "mixtures": plot_network_mixtures,
+    "axial": plot_network_axial,
+    "conversion": plot_network_conversion,
 }
 # contents over throughput and the mean of the matrix are the same sum in another order
 ROUND_OFF = 1e-12
@@ -44,7 +48,8 @@ def run(case, folder, place="cases/made/case.yaml"):
 def scene(request, tmp_path_factory):
     """Name, folder of results, and numbers of a network of cases/."""
     folder = tmp_path_factory.mktemp(request.param)
-    return request.param, folder, run(load_case(ROOT / "cases" / request.param / "case.yaml"), folder)
+    file = ROOT / "cases" / request.param / "case.yaml"
+    return request.param, folder, run(load_case(file), folder, str(file))
 
 
 def test_numbers_are_as_expected(scene):

@@ -11,7 +11,7 @@ NETWORK = "network"
 # sections of a case that is a network, and the keys of those that it shares with a bed
 SECTIONS = ("title", NETWORK, "figures")
 FIGURE_KEYS = ("resolution_dpi",)
-NO_BUILDERS = ("name", "start", "show")
+NO_BUILDERS = ("name", "start", "show", "moments_s")
 
 
 def bed_problems(data: dict[str, Any], known: dict[str, Any], lines: dict[str, int]) -> list[Problem]:

@@ -103,6 +103,11 @@ class Network:
         return bool(self.exits)
 
     @property
+    def placed(self) -> bool:
+        """Whether all states have a height."""
+        return all(np.isfinite(state.height_m) for state in self.states)
+
+    @property
     def carries(self) -> bool:
         """Whether contents of the steady state are the declared ones: open, all declared, no reaction."""
         return self.is_open and REACTED not in self.exits and bool(np.isfinite(self.contents).all())

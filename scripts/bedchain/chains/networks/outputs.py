@@ -9,17 +9,32 @@ import pandas as pd
 from numpy.typing import NDArray
 
 from bedchain.chains.networks import checks
+from bedchain.chains.networks.bubbling_wakes import remaining
 from bedchain.chains.networks.mixer import check_filling
 from bedchain.chains.networks.mixture import mixture_table
+from bedchain.chains.networks.network import REACTED
 from bedchain.chains.networks.page import PageChain
 from bedchain.errors import UserError
 
 Array = NDArray[np.float64]
 # F is followed until this share has left, at most so many steps
-MOST_LEFT, MOST_STEPS = 0.999, 20_000
+MOST_LEFT, MOST_STEPS = 0.999, 1_000_000
 # rows of F and E in the table, steps of the Monte Carlo, eigenvalues
+AXIAL = ("low", "up")
 ROWS, DRAWN_STEPS, EIGENVALUES = 400, 400, 4
+# steps of a path
+MOST_PATH_STEPS = 4000
 ROUND_OFF = 1e-12
+# of what a closed form says
+UNITS = {
+    "residence_mean_continuous": "s",
+    "circulation_time": "s",
+    "bed_height": "m",
+    "rate_closed_form": "1/s",
+    "exchange_bubble_cloud": "1/s",
+    "exchange_cloud_emulsion": "1/s",
+    "rise_velocity": "m/s",
+}
 # pulses of at most so many states are numbers too
 SMALL = 12
 # particles that a path is chosen from
@@ -47,9 +62,7 @@ def metrics_table(chain: PageChain, particles: int, seed: int) -> pd.DataFrame:
     rows += _open_numbers(chain) if chain.network.is_open else _closed_numbers(chain)
     steps = min(DRAWN_STEPS, horizon(chain))
     rows.append(Row("monte_carlo_sigmas", checks.monte_carlo_sigmas(chain, steps, particles, seed), "1"))
-    rows += [
-        Row(name, value, "s" if name.startswith("residence") else "1") for name, value in chain.theory.items()
-    ]
+    rows += [Row(name, value, UNITS.get(name, "1")) for name, value in chain.theory.items()]
     table = pd.DataFrame(rows)
     table.insert(1, "source", chain.name)
     return table.assign(ci_low=np.nan, ci_high=np.nan)
@@ -113,30 +126,36 @@ def horizon(chain: PageChain) -> int:
 def residence_table(chain: PageChain) -> pd.DataFrame:
     """F and E by exit: chain, exit, time_s, left_share_1, leaving_rate_1_s."""
     network, steps = chain.network, horizon(chain)
-    left = network.open_chain.left_by(steps)
     every = max(1, -(-steps // ROWS))
-    at = np.arange(0, steps + 1, every)
-    rate = np.diff(left[at], axis=0, prepend=left[:1]) / (every * network.step_s)
+    # exits of the matrix to this power hold what has left after so many steps
+    stride = np.linalg.matrix_power(network.product.toarray(), every)
+    n, now = len(network.states), np.zeros(len(stride))
+    now[:n] = network.feed / network.feed.sum()
+    left = np.zeros((-(-steps // every) + 1, len(network.exits)))
+    for row in range(1, len(left)):
+        now = now @ stride
+        left[row] = now[n:]
+    times, rate = every * network.step_s, np.diff(left, axis=0, prepend=0)
     parts = [
         pd.DataFrame(
             {
                 "exit": name,
-                "time_s": network.step_s * at,
-                "left_share_1": left[at, place],
-                "leaving_rate_1_s": rate[:, place],
+                "time_s": times * np.arange(len(left)),
+                "left_share_1": left[:, place],
+                "leaving_rate_1_s": rate[:, place] / times,
             }
         )
         for place, name in enumerate(network.exits)
-    ]  # fmt: skip
+    ]
     return _named(chain, pd.concat(parts, ignore_index=True))
 
 
-def pulses_table(chain: PageChain, moments_s: list[float]) -> pd.DataFrame:
+def pulses_table(chain: PageChain) -> pd.DataFrame:
     """Contents at the steps next to moments after the start, with the columns of `states_table` and times."""
     network, parts = chain.network, []
-    steps = [round(moment / network.step_s) for moment in moments_s]
+    steps = [round(moment / network.step_s) for moment in chain.moments_s]
     contents = network.expected(checks.start_of(chain), max(steps))
-    for moment, step in zip(moments_s, steps, strict=True):
+    for moment, step in zip(chain.moments_s, steps, strict=True):
         columns = _state_columns(chain)
         columns.insert(1, "moment_s", moment)
         columns.insert(2, "time_s", step * network.step_s)
@@ -158,7 +177,7 @@ def path_table(chain: PageChain, steps: int, seed: int) -> pd.DataFrame:
 
     Of several particles the one whose stay is nearest to the mean is shown, so that the path is a usual one.
     """
-    network, rng = chain.network, np.random.default_rng(seed)
+    network, rng, steps = chain.network, np.random.default_rng(seed), min(steps, MOST_PATH_STEPS)
     amount = network.feed if network.is_open else checks.start_of(chain)
     begin = rng.choice(len(amount), PATHS, p=amount / amount.sum())
     walked = np.array([states.copy() for states in network.walk(begin, steps, rng)])
@@ -249,3 +268,43 @@ def _state_columns(chain: PageChain) -> pd.DataFrame:
 def _named(chain: PageChain, table: pd.DataFrame) -> pd.DataFrame:
     table.insert(0, "chain", chain.name)
     return table
+
+
+def conversion_table(chain: PageChain) -> pd.DataFrame:
+    """Share of the feed that has reacted below a height: chain, height_m, conversion_1.
+
+    What reacts in a zone of one state is spread evenly over the height.
+    """
+    network = chain.network
+    sums, columns = network.open_chain, _state_columns(chain)
+    reacts = sums.hold_up() * sums.exits[:, network.exits.index(REACTED)] / sums.throughput
+    heights = np.sort(columns["height_m"].unique())
+    alone = columns.groupby("zone")["zone"].transform("size").to_numpy() == 1
+    places = columns["height_m"].to_numpy()
+    by_height = np.array([reacts[(places == height) & ~alone].sum() for height in heights])
+    size = 2 * heights[0]
+    tops, whole = heights + size / 2, heights[-1] + size / 2
+    below = by_height.cumsum() + reacts[alone].sum() * tops / whole
+    table = pd.DataFrame({"height_m": [0, *tops], "conversion_1": [0, *below]})
+    return _named(chain, table)
+
+
+def axial_table(chain: PageChain, line_m: float, times_s: Array) -> pd.DataFrame:
+    """Share of low and up that is on its side: source, group, time_s, fraction_remaining_1."""
+    curves = remaining(chain.network, line_m, times_s)
+    parts = [
+        pd.DataFrame({"source": chain.name, "group": group, "time_s": times_s, "fraction_remaining_1": curve})
+        for group, curve in zip(AXIAL, curves.T, strict=True)
+    ]
+    return pd.concat(parts, ignore_index=True)
+
+
+def axial_metrics(curves: pd.DataFrame, beside: pd.DataFrame) -> pd.DataFrame:
+    """Root mean square differences of curves from the mean of the DEM runs, by source and group."""
+    dem = beside[beside["source"].str.fullmatch(r"dem(_\d+)?")]
+    mean = dem.groupby(["group", "time_s"])["fraction_remaining_1"].mean()
+    rows = []
+    for (source, group), part in pd.concat([curves, beside]).groupby(["source", "group"], sort=False):
+        off = part["fraction_remaining_1"].to_numpy() - mean.loc[group].to_numpy()
+        rows.append((f"error_rms_{group}", source, float(np.sqrt(np.mean(off**2))), "1", np.nan, np.nan))
+    return pd.DataFrame(rows, columns=["quantity", "source", "value", "unit", "ci_low", "ci_high"])

@@ -1,13 +1,14 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """The networks of a case page: its section ``network`` as chains, each with what it starts with."""
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Sequence
+from pathlib import Path
 from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
-from bedchain.chains.networks import mixer, riser, wakes
+from bedchain.chains.networks import bubbling_wakes, mixer, reactors, riser, wakes
 from bedchain.chains.networks.builders import from_edges, from_fluxes, from_rates
 from bedchain.chains.networks.network import Network, State
 from bedchain.errors import DataError, UserError, guess
@@ -31,6 +32,8 @@ class PageChain(NamedTuple):
         What a closed form says of it, by ``<quantity>``.
     shown : bool
         Whether figures show it.
+    moments_s : tuple of float
+        Moments at which what follows its start is shown [s].
     """
 
     name: str
@@ -38,6 +41,7 @@ class PageChain(NamedTuple):
     start: Array | None
     theory: dict[str, float]
     shown: bool = True
+    moments_s: tuple[float, ...] = ()
 
 
 def chains_of(section: Section, place: str) -> list[PageChain]:
@@ -58,35 +62,45 @@ def chains_of(section: Section, place: str) -> list[PageChain]:
     chains = []
     for entry in section["chains"]:
         try:
-            chains.append(chain_of(entry))
-        except DataError as error:
+            chains.append(chain_of(entry, Path(place).parent.parent, section["moments_s"]))
+        except UserError as error:
             raise UserError(f"{place}, chain {entry['name']}: {error}") from None
     _check_mixtures(section, chains, place)
     return chains
 
 
-def starts_and_exits(section: Section) -> tuple[bool, bool]:
+def starts_and_exits(section: Section, cases: Path) -> tuple[bool, bool]:
     """Whether the shown chains of a page have an open one, and one of states with heights."""
-    networks = [chain_of(entry).network for entry in section["chains"] if entry["show"]]
+    networks = [chain_of(entry, cases).network for entry in section["chains"] if entry["show"]]
     return any(network.is_open for network in networks), any(
         np.isfinite(state.height_m) for network in networks for state in network.states
     )
 
 
-def chain_of(entry: Section) -> PageChain:
+def chain_of(entry: Section, cases: Path, moments_s: Sequence[float] = ()) -> PageChain:
     """A chain of a page.
+
+    Parameters
+    ----------
+    entry : mapping
+        Of the section's ``chains``.
+    cases : Path
+        Folder of the cases, which it may name one of.
+    moments_s : sequence of float
+        Of the page, where the entry has none.
 
     Raises
     ------
-    DataError
+    UserError
         See `network.Network` and the builders; or declared contents are not what its moves hold.
     """
     builder = next(name for name in BUILDERS if name in entry)
-    network, start, theory = BUILDERS[builder](entry[builder])
+    network, start, theory = BUILDERS[builder](entry[builder], cases)
     if "start" in entry:
         start = _start(network, entry["start"])
     check_contents(network)
-    return PageChain(entry["name"], network, start, theory, entry["show"])
+    moments = tuple(entry.get("moments_s", moments_s))
+    return PageChain(entry["name"], network, start, theory, entry["show"], moments)
 
 
 def check_contents(network: Network) -> None:
@@ -117,10 +131,11 @@ def _start(network: Network, amounts: Mapping[str, float]) -> Array:
 
 
 Built = tuple[Network, Array | None, dict[str, float]]
+Builder = Callable[[Section, Path], Built]
 
 
-def _free(build: Callable[..., Network], value: str) -> Callable[[Section], Built]:
-    def built(keys: Section) -> Built:
+def _free(build: Callable[..., Network], value: str) -> Builder:
+    def built(keys: Section, cases: Path) -> Built:
         given = keys["states"]
         states = [
             State(
@@ -138,14 +153,14 @@ def _free(build: Callable[..., Network], value: str) -> Callable[[Section], Buil
     return built
 
 
-def _mixer(keys: Section) -> Built:
+def _mixer(keys: Section, cases: Path) -> Built:
     size = keys["rows"], keys["columns"]
     moves = keys["down_1"], keys["up_1"], keys["sideways_1"]
     network = mixer.static_mixer(*size, keys["steps"], *moves, step_s=keys["step_s"])
     return network, mixer.loaded(*size, keys["loading"], keys["loaded_1"]), {}
 
 
-def _wakes(keys: Section) -> Built:
+def _wakes(keys: Section, cases: Path) -> Built:
     names = ("caught_1", "up_1", "feed_1", "wake_1", "step_s")
     network = wakes.axial_wakes(**{name: keys[name] for name in names if name in keys})
     return network, None, {}
@@ -163,7 +178,7 @@ def _exchange(keys: Section, unit: str) -> riser.Exchange:
     )
 
 
-def _riser(keys: Section) -> Built:
+def _riser(keys: Section, cases: Path) -> Built:
     sizes = keys["height_m"], keys["up_m_s"], keys["down_m_s"]
     exchange = _exchange(keys, "1_s")
     rates = exchange.to_annulus, exchange.to_core, exchange.refluxed
@@ -171,18 +186,57 @@ def _riser(keys: Section) -> Built:
     return riser.riser(keys["cells"], *sizes, exchange), None, theory
 
 
-def _riser_steps(keys: Section) -> Built:
+def _riser_steps(keys: Section, cases: Path) -> Built:
     return riser.riser_steps(keys["cells"], _exchange(keys, "1")), None, {}
 
 
-BUILDERS: dict[str, Callable[[Section], Built]] = {
+def _bubbling_bed(keys: Section, cases: Path) -> Built:
+    bed = bubbling_wakes.bed_of_case(cases / keys["case"] / "case.yaml")
+    mechanisms = bubbling_wakes.Mechanisms(keys["wakes"], keys["dispersed"])
+    network = bubbling_wakes.bubbling_wakes(bed, keys["cells"], mechanisms)
+    theory = {"bed_height": bed.bed_height, "circulation_time": bed.circulation_time}
+    start = np.zeros(len(network.states))
+    start[: keys["cells"] // 10 or 1] = network.contents[: keys["cells"] // 10 or 1]
+    return network, start, theory
+
+
+def _tanks(keys: Section, cases: Path) -> Built:
+    sizes = keys["cells"], keys["residence_s"], keys["rate_1_s"]
+    network, theory = reactors.tanks(*sizes, keys.get("peclet_1"), keys["height_m"])
+    return network, None, theory
+
+
+def _mixed_emulsion(keys: Section, cases: Path) -> Built:
+    network, theory = reactors.mixed_emulsion(**keys)
+    return network, None, theory
+
+
+def _two_phase(keys: Section, cases: Path) -> Built:
+    bubbles = reactors.Bubbles(*(keys[name] for name in reactors.Bubbles._fields))
+    network, theory = reactors.two_phases(bubbles, keys["exchange_1_s"])
+    return network, None, theory
+
+
+def _three_phase(keys: Section, cases: Path) -> Built:
+    bubbles = reactors.Bubbles(*(keys[name] for name in reactors.Bubbles._fields))
+    grains = reactors.Grains(*(keys[name] for name in reactors.Grains._fields))
+    network, theory = reactors.three_phases(bubbles, grains)
+    return network, None, theory
+
+
+BUILDERS: dict[str, Builder] = {
     "edges": _free(from_edges, "probability_1"),
     "rates": _free(from_rates, "rate_1_s"),
     "fluxes": _free(from_fluxes, "flow"),
     "static_mixer": _mixer,
     "axial_wakes": _wakes,
+    "bubbling_bed": _bubbling_bed,
     "riser": _riser,
     "riser_steps": _riser_steps,
+    "tanks": _tanks,
+    "mixed_emulsion": _mixed_emulsion,
+    "two_phase": _two_phase,
+    "three_phase": _three_phase,
 }
 
 

@@ -41,7 +41,7 @@ def test_states_are_declared_and_computed(riser, mixers):
 
 
 def test_pulses_are_at_the_steps_next_to_the_moments(riser):
-    table = outputs.pulses_table(riser, [0.0, 1.4])
+    table = outputs.pulses_table(riser._replace(moments_s=(0.0, 1.4)))
     assert sorted(set(table["time_s"])) == [0, 1] and table["content"].sum() == pytest.approx(2)
 
 

@@ -2,6 +2,7 @@
 """Pages: every fault of a network names file, chain and state."""
 
 import copy
+from pathlib import Path
 
 import pytest
 
@@ -37,7 +38,7 @@ def test_a_page_gives_its_chains(section):
     plant, mixer = chains_of(section, "case.yaml")
     assert plant.network.open_chain.residence()[0] == pytest.approx(6) and plant.start.tolist() == [0, 1]
     assert mixer.start.tolist() == [0.5, 0.5, 0, 0] and mixer.network.step_s == 1
-    assert starts_and_exits(section) == (True, True)
+    assert starts_and_exits(section, Path()) == (True, True)
 
 
 @pytest.mark.parametrize(
