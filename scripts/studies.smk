@@ -146,6 +146,7 @@ rule validate_bed:
         code("validate_bed"),
         **TRAJECTORY,
         points=f"cases/{NAME}/measured.csv",
+        peers=source_files(f"cases/{NAME}", "peers.csv"),
     output:
         multiext(f"{FIGURES}/fig_validation", **FORMS),
         table=f"{RESULTS}/validation.csv",

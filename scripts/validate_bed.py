@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """The simulated bed against measured profiles: validation.csv, validation_metrics.csv and a figure."""
 
+from dataclasses import dataclass
 from pathlib import Path
 
 import numpy as np
@@ -11,7 +12,7 @@ from bedchain.figures.style import DOUBLE_COLUMN_IN, LINE_COLOUR, FigureFiles, f
 from bedchain.files import write_csv
 from bedchain.measures.voidage import Slab
 from bedchain.stage import LOG, run_stage
-from bedchain.studies.validation import BedFrames, compare, read_points, simulated
+from bedchain.studies.validation import BedFrames, compare, measurement_metrics, read_points, simulated
 from bedchain.trajectory.frames import Window
 from bedchain.trajectory.store import BedFiles
 
@@ -20,6 +21,22 @@ FINE_POINTS = 81  # of the drawn curve
 LABELS = {"voidage_1": "voidage [1]", "particle_velocity_m_s": "particle velocity [m/s]"}
 SIMULATED = "#0077bb"
 PANEL_IN, LEGEND_IN = 1.9, 0.3
+
+
+@dataclass(frozen=True)
+class Published:
+    """What was published of the bed.
+
+    Attributes
+    ----------
+    points : Path
+        Measured points, ``cases/<case>/measured.csv``.
+    peers : list of Path
+        Simulations, ``cases/<case>/peers.csv`` where there is one: quantity, source, value, unit, reference.
+    """
+
+    points: Path
+    peers: list[Path]
 
 
 def draw(table: pd.DataFrame, curves: pd.DataFrame, files: FigureFiles) -> None:
@@ -47,7 +64,7 @@ def draw(table: pd.DataFrame, curves: pd.DataFrame, files: FigureFiles) -> None:
 
 
 def validate_bed(
-    bed: BedFiles, points: Path, table: Path, metrics: Path, files: FigureFiles,
+    bed: BedFiles, published: Published, table: Path, metrics: Path, files: FigureFiles,
     window: Window, width_m: float, slab: Slab,
 ) -> None:  # fmt: skip
     """Average the bed over a window as the measurement does, and put both side by side.
@@ -55,10 +72,10 @@ def validate_bed(
     Parameters
     ----------
     bed : BedFiles
-    points : Path
-        Measured points, ``cases/<case>/measured.csv``.
+    published : Published
     table, metrics : Path
-        Get every point, and the differences with their aims.
+        Get every point, and the differences with their aims, those of the peers, and how far the measurement
+        is from its own mirror image.
     files : FigureFiles
         Figure, and its curves.
     window : Window
@@ -67,22 +84,27 @@ def validate_bed(
         Of the bed [m].
     slab : Slab
     """
-    measured = read_points(points)
+    measured = read_points(published.points)
     store, described = bed.open()
     frames = store[window.frames(np.array(described["times_s"]))]
     seen = BedFrames(frames, described["frame_interval_s"], slab.diameter_m / 2, width_m, slab.thickness_m)
-    compared, found = compare(measured, seen)
-    found["aim"] = found["quantity"].map(AIMS)
+    compared, differences = compare(measured, seen)
+    others = [pd.read_csv(file, comment="#") for file in published.peers]
+    rows = pd.concat([differences, *others, measurement_metrics(measured, width_m)], ignore_index=True)
+    rows["aim"] = rows["quantity"].map(AIMS)
+    rows["met"] = np.where(rows["aim"].isna(), "", np.where(rows["value"] <= rows["aim"], "yes", "no"))
     x = np.linspace(0, width_m, FINE_POINTS)
     panels = measured[["quantity", "height_m"]].drop_duplicates().itertuples(index=False)
     curves = pd.concat([simulated(seen, quantity, height, x)[0] for quantity, height in panels])
     draw(compared, curves, files)
     write_csv(curves, files.csv)
     write_csv(compared, table)
-    write_csv(found, metrics)
-    for row in found[found["aim"].notna()].itertuples():
-        LOG.info("%s %.4g %s, aim %.4g: %s", row.quantity, row.value, row.unit, row.aim,
-                 "met" if row.value <= row.aim else "missed")  # fmt: skip
+    write_csv(rows, metrics)
+    for row in rows[rows["aim"].notna()].itertuples():
+        LOG.info(
+            "%s of %s: %.4g %s (95 %% band %.3g to %.3g), aim %.4g: %s", row.quantity, row.source, row.value,
+            row.unit, row.ci_low, row.ci_high, row.aim, "met" if row.met == "yes" else "missed",
+        )  # fmt: skip
 
 
 if rule := globals().get("snakemake"):

@@ -23,8 +23,8 @@ overlap : depth by which two spheres penetrate each other, in diameters [1].
 granular temperature (theta) : variance of the particles' velocities about their local mean [m2/s2].
 DEM : the discrete element simulation with its gas; also its curves, as against those of a chain.
 segment : a piece of a run that ends in a restart of both solvers; it exists whole or not at all.
-restart : state of both solvers from which a run goes on; its start computes one force anew, so that
-    other segments give another realisation.
+restart : state of both solvers from which a run goes on; other segments change the course by round-off (of a
+    drum by one force computed anew), and so give another realisation in the end.
 rank : one of the processes that share a run.
 stamp : hash of all that a result depends on; the name of the folder that holds it.
 

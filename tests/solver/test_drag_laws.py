@@ -24,6 +24,7 @@ FORCES = [
     ("di_felice", 0.5, 0.5, 2.084e-6),
 ]
 FOUR_DIGITS = 3e-4
+EDGE = (0.79999, 0.80001)  # where gidaspow changes from one law to the other
 
 
 @pytest.fixture(scope="module")
@@ -46,8 +47,11 @@ def test_forces_worked_out_apart(forces, law, voidage, slip, force):
 def test_a_lone_slow_particle_feels_stokes_drag(forces):
     slow = forces.xs((0.999, 1e-6), level=("voidage", "slip"))["coefficient"]
     # A thousandth of solids: Wen-Yu's factor is 1.003; the others' first correction goes with sqrt(solids)
-    for law, within in [("gidaspow", 0.005), ("wen_yu", 0.005), ("beetstra", 0.06), ("koch_hill", 0.08)]:
-        assert slow[law] == pytest.approx(STOKES, rel=within)
+    within = {
+        "gidaspow": 0.005, "gidaspow_blend": 0.01, "wen_yu": 0.005, "beetstra": 0.06, "koch_hill": 0.08,
+    }  # fmt: skip
+    for law, tolerance in within.items():
+        assert slow[law] == pytest.approx(STOKES, rel=tolerance)
     # Di Felice's coefficient is Dallavalle's, which is 4 % low at vanishing Re: (4.8)^2 / 24
     assert slow["di_felice"] == pytest.approx(STOKES * 4.8**2 / 24, rel=0.03)
 
@@ -63,3 +67,21 @@ def test_gidaspow_is_ergun_below_and_wen_yu_above(forces):
     np.testing.assert_array_equal(above.loc["gidaspow"]["force"], above.loc["wen_yu"]["force"])
     below = forces.loc[("gidaspow", 0.7, 1.5), "force"]
     assert below != pytest.approx(forces.loc[("wen_yu", 0.7, 1.5), "force"], rel=0.01)
+
+
+def test_the_blend_is_ergun_where_dense_and_wen_yu_where_dilute(forces):
+    blend, sharp = (forces.loc[law]["force"] for law in ("gidaspow_blend", "gidaspow"))
+    far = [0.4, 0.5, 0.9, 0.999]
+    # The arc tangent leaves the other law 0.3 to 1.2 %; at 20 m/s in nearly empty gas Ergun's is four times
+    # Wen-Yu's
+    np.testing.assert_allclose(blend[far], sharp[far], rtol=0.05)
+    assert blend[0.4, 0.5] == pytest.approx(sharp[0.4, 0.5], rel=2e-3)
+
+
+def test_the_blend_does_not_jump(forces):
+    below, above = (forces.xs(voidage, level="voidage")["force"].xs(1.5, level="slip") for voidage in EDGE)
+    assert above["gidaspow_blend"] == pytest.approx(below["gidaspow_blend"], rel=0.005)
+    assert below["gidaspow"] > 1.3 * above["gidaspow"]
+    # Half of each law in the middle
+    mean = (below["gidaspow"] + above["gidaspow"]) / 2
+    assert below["gidaspow_blend"] == pytest.approx(mean, rel=0.005)

@@ -14,7 +14,7 @@ from bedchain.trajectory.frames import Window
 from bedchain.trajectory.store import BedFiles
 from made.synthetic_bed import STAMP, write_binary_dump
 from parse_dumps import parse_dumps
-from validate_bed import validate_bed
+from validate_bed import Published, validate_bed
 
 WIDTH, HEIGHT, DEPTH, RADIUS, NUMBER = 0.044, 0.05, 0.01, 6e-4, 6000
 FILLED = 0.04
@@ -59,13 +59,14 @@ def bed(tmp_path_factory):
 def validated(bed, tmp_path):
     """Function that validates a window against points and returns the folder of the results."""
 
-    def run(points, start_s=0.0, end_s=1.0):
+    def run(points, start_s=0.0, end_s=1.0, peers=()):
         file = tmp_path / "measured.csv"
         points.to_csv(file, index=False)
         files = FigureFiles(tmp_path / "v.png", tmp_path / "v.pdf", tmp_path / "v.csv", 60)
         validate_bed(
-            BedFiles(bed / "trajectory.npy", bed / "trajectory.json"), file, tmp_path / "table.csv",
-            tmp_path / "metrics.csv", files, Window(start_s, end_s), WIDTH, Slab(DEPTH, 2 * RADIUS),
+            BedFiles(bed / "trajectory.npy", bed / "trajectory.json"), Published(file, list(peers)),
+            tmp_path / "table.csv", tmp_path / "metrics.csv", files, Window(start_s, end_s),
+            WIDTH, Slab(DEPTH, 2 * RADIUS),
         )  # fmt: skip
         return tmp_path
 
@@ -99,6 +100,29 @@ def test_a_bed_of_known_profiles_is_found_to_have_them(validated):
     assert (table["ci_low"] <= table["simulated"]).all() and (table["simulated"] <= table["ci_high"]).all()
     for name in ("v.png", "v.pdf", "v.csv"):
         assert (folder / name).stat().st_size > 0
+
+
+def test_simulated_profiles_are_averaged_with_their_mirror_images(validated):
+    table = pd.read_csv(validated(known_points()) / "table.csv")
+    for _, profile in table.groupby(["quantity", "height_m"]):
+        values = profile.sort_values("position_x_m")["simulated"].to_numpy()
+        np.testing.assert_allclose(values, values[::-1], rtol=1e-9)
+
+
+def test_published_simulations_stand_beside_it_with_the_same_aims(validated, tmp_path):
+    file = tmp_path / "peers.csv"
+    file.write_text(
+        "# published\nquantity,source,value,unit,reference\n"
+        "voidage_error_rms,code A,0.121,1,a paper\nvoidage_error_rms,code B,0.044,1,a paper\n",
+        encoding="utf-8",
+    )
+    metrics = pd.read_csv(validated(known_points(), peers=[file]) / "metrics.csv")
+    rows = metrics[metrics["quantity"] == "voidage_error_rms"].set_index("source")
+    assert rows["met"].to_dict() == {"dem": "yes", "code A": "no", "code B": "yes"}
+    # a symmetric measurement, of which as much goes down as up
+    measured = metrics[metrics["source"] == "measured"].set_index("quantity")["value"]
+    assert measured["particle_velocity_asymmetry_rms"] == pytest.approx(0, abs=1e-9)
+    assert abs(measured["solids_flux_15_mm"]) < 0.2 * measured["solids_flux_15_mm_size"]
 
 
 def test_an_error_of_a_tenth_is_seen_as_such(validated):

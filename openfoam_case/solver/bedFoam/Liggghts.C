@@ -2,6 +2,7 @@
 
 #include "Liggghts.H"
 
+#include <algorithm>
 #include <cmath>
 
 #include "atom.h"
@@ -43,6 +44,8 @@ bedFoam::Liggghts::Liggghts(
     };
     force_ = property("dragforce");
     dragged_ = property("draggedVelocity");
+    lastForce_ = property("lastForce");
+    lastTorque_ = property("lastTorque");
     // Kept by the walls' option store_force
     bottom_ = property("force_bottom");
     sides_ = {property("force_left"), property("force_right")};
@@ -68,8 +71,31 @@ void bedFoam::Liggghts::start(long steps)
         dem_->error->all(FLERR, "the deck has no pair_style: it must include liggghts_inputs/include/bed.in");
     }
     update.integrate->setup();
+    putBackForces();
     dem_->timer->init();
     dem_->timer->barrier_start(TIME_LOOP);
+}
+
+void bedFoam::Liggghts::putBackForces()
+{
+    for (int i = 0; i < count(); ++i)
+    {
+        const double* force = lastForce_->array_atom[i];
+        // Zero where the restart keeps none, as of a settled bed: under weight no force is exactly zero
+        if (force[0] == 0 && force[1] == 0 && force[2] == 0) continue;
+        std::copy_n(force, 3, dem_->atom->f[i]);
+        std::copy_n(lastTorque_->array_atom[i], 3, dem_->atom->torque[i]);
+    }
+}
+
+void bedFoam::Liggghts::writeRestart(const std::string& file)
+{
+    for (int i = 0; i < count(); ++i)
+    {
+        std::copy_n(dem_->atom->f[i], 3, lastForce_->array_atom[i]);
+        std::copy_n(dem_->atom->torque[i], 3, lastTorque_->array_atom[i]);
+    }
+    command("write_restart " + file);
 }
 
 void bedFoam::Liggghts::advance(int steps) { dem_->update->integrate->run(steps); }

@@ -30,8 +30,8 @@ double ergun(const bedFoam::DragState& s)
 }
 
 const std::vector<std::pair<std::string, bedFoam::DragLaw>> laws{
-    {"gidaspow", bedFoam::gidaspow}, {"wen_yu", bedFoam::wenYu},       {"di_felice", bedFoam::diFelice},
-    {"beetstra", bedFoam::beetstra}, {"koch_hill", bedFoam::kochHill},
+    {"gidaspow", bedFoam::gidaspow}, {"gidaspow_blend", bedFoam::gidaspowBlend}, {"wen_yu", bedFoam::wenYu},
+    {"di_felice", bedFoam::diFelice}, {"beetstra", bedFoam::beetstra}, {"koch_hill", bedFoam::kochHill},
 };
 
 }
@@ -40,6 +40,13 @@ double bedFoam::gidaspow(const DragState& s)
 {
     constexpr double ergunBelow = 0.8;
     return s.voidage < ergunBelow ? ergun(s) : wenYu(s);
+}
+
+double bedFoam::gidaspowBlend(const DragState& s)
+{
+    constexpr double steepness = 150 * 1.75;
+    const double dilute = 0.5 + std::atan(steepness * (s.voidage - 0.8)) / pi;
+    return dilute * wenYu(s) + (1 - dilute) * ergun(s);
 }
 
 double bedFoam::wenYu(const DragState& s)

@@ -6,13 +6,19 @@ from collections.abc import Iterator
 
 from bedchain.case.check_registry import Finding, reads
 from bedchain.physics.constants import GRAVITY_M_S2
-from bedchain.physics.fluidization import courant_number
-from bedchain.physics.packing import settled_height
+from bedchain.physics.fluidization import courant_number, ergun_velocity
+from bedchain.physics.packing import (
+    PACKED_AREA_SHARE,
+    PACKED_VOLUME_SHARE,
+    settled_height,
+    slab_voidage,
+)
 from bedchain.physics.whole_numbers import is_multiple, nearest_multiple, ratio, rounded_down
 
 COURANT_MAX = 1.0  # a gas parcel crosses at most one cell a step
 ADDED_MASS_MAX = 0.05  # of a particle's mass: the equations leave out the gas that a particle accelerates
 FREE_FALL_SHARE_MAX = 0.1  # of the time to fall through a gas cell: at 0.14 a fixed bed of 0.05 mm rattled
+DRAG_LAG_MAX = 0.1  # of a collision's change of velocity: drag sees contacts one gas step late
 GAS_CELL_MAX = 0.5  # of the settled height: where a cell is higher than the bed the gas carries a third
 LAYERS_MIN = 10  # of particles: a lower bed is nearly all top and bottom
 
@@ -88,6 +94,35 @@ def gas_step_resolves_the_fall(step: float, cell: float) -> Iterator[Finding]:
             "which a particle falls through a gas cell; its drag is updated once a gas step"
         )
         yield "time.gas_step_s", wrong, f"take at most {rounded_down(limit)}, or a larger gas.cell_size_m"
+
+
+@reads(
+    "time.gas_step_s", "particles.diameter_m", "particles.density_kg_m3", "gas.density_kg_m3",
+    "gas.viscosity_Pa_s", "bed.thickness_m", "bed.layers",
+)  # fmt: skip
+def drag_follows_collisions(
+    step: float, diameter: float, density: float, gas_density: float, viscosity: float, thickness: float,
+    layers: str,
+) -> Iterator[Finding]:  # fmt: skip
+    """Refuse a gas step in which drag takes a large part of what a collision changes.
+
+    Drag is implicit in the velocity without the contacts of the present step: of a collision's change it is
+    wrong by dt K/m / 2. At minimum fluidization drag carries the share e of the weight, the pressure the
+    rest: K/m is e g (1 - rho_g / rho_p) over the slip u_mf / e.
+    """
+    packed = slab_voidage(PACKED_AREA_SHARE, thickness / diameter)
+    voidage = 1 - PACKED_VOLUME_SHARE if layers == "many" else packed
+    if not 0 < voidage < 1 or density <= gas_density:
+        return
+    slip = ergun_velocity(voidage, diameter, density, gas_density, viscosity) / voidage
+    rate = voidage * GRAVITY_M_S2 * (1 - gas_density / density) / slip
+    limit = 2 * DRAG_LAG_MAX / rate
+    if step > limit:
+        wrong = (
+            f"{step:g} s is above {limit:.4g} s: drag, which is dt K/m / 2 late, would be wrong by more than "
+            f"{DRAG_LAG_MAX:.0%} of what a collision changes (K/m = {rate:.4g} 1/s at minimum fluidization)"
+        )
+        yield "time.gas_step_s", wrong, f"take at most {rounded_down(limit)}"
 
 
 @reads(

@@ -5,8 +5,10 @@ A segment is written into a folder ``<name>.part`` and renamed when it is comple
 continues after its last finished segment. Its record, written last, holds size and hash of each of its files,
 and of the state that it went on from: a segment whose files are others is made again.
 
-The start of a segment computes one force anew, and a fluidized bed is chaotic: ``segment_s`` and the number
-of ranks pick another realisation of the same bed, without bias.
+A bed's segment goes on with the forces of the last step, which its restart keeps, so that it leaves the
+course of one piece by round-off alone. A drum's start computes one force anew: LIGGGHTS has no command that
+puts forces back. Either bed is chaotic: in the end ``segment_s`` and the number of ranks pick another
+realisation of the same bed, without bias.
 """
 
 import hashlib

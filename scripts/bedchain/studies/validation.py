@@ -1,5 +1,9 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Simulated profiles at the points of a measured bed, and their differences from the measurement."""
+"""Simulated profiles at the points of a measured bed, and their differences from the measurement.
+
+The box is symmetric, so that a simulated profile is averaged with its mirror image, which halves its noise.
+The measurement is no ruler either: `measurement_metrics` says how far it is from its own mirror image.
+"""
 
 from pathlib import Path
 from typing import NamedTuple
@@ -14,6 +18,7 @@ from bedchain.uncertainty.bands import block_band, means_left_out
 
 STRIP_M = 1.9e-3  # width of a strip: the distance of measured points across the bed
 SLICE_M = 4e-3  # height of a slice: about three particles, short against the distance of measured heights
+ACROSS = 400  # positions over which the solids flux is averaged
 POINT_COLUMNS = ("quantity", "height_m", "position_x_m", "value")
 
 
@@ -40,7 +45,7 @@ class BedFrames(NamedTuple):
 def simulated(
     bed: BedFrames, quantity: str, height_m: float, x_m: np.ndarray
 ) -> tuple[pd.DataFrame, np.ndarray]:
-    """Profile across the bed with its 95 % band by leaving out blocks of frames.
+    """Profile across the bed, averaged with its mirror image; 95 % band by leaving out blocks of frames.
 
     Parameters
     ----------
@@ -59,8 +64,11 @@ def simulated(
     left_out : (BLOCKS, n_positions) ndarray
         Without each block of frames, in the quantity's unit.
     """
+    sides = np.concatenate([x_m, bed.width_m - x_m])
+    both = boxes_around(sides, STRIP_M, height_m, SLICE_M, bed.width_m, bed.depth_m)
+    solids = np.stack([solids_in_boxes(x, z, vz, bed.radius_m, both) for x, z, _, vz in bed.frames])
+    solids = (solids[..., : len(x_m)] + solids[..., len(x_m) :]) / 2
     boxes = boxes_around(x_m, STRIP_M, height_m, SLICE_M, bed.width_m, bed.depth_m)
-    solids = np.stack([solids_in_boxes(x, z, vz, bed.radius_m, boxes) for x, z, _, vz in bed.frames])
     value, left_out = profile_left_out(quantity, solids, boxes)
     low, high = block_band(value, left_out)
     names = {"quantity": quantity, "height_m": height_m, "position_x_m": x_m}
@@ -97,6 +105,52 @@ def compare(points: pd.DataFrame, bed: BedFrames) -> tuple[pd.DataFrame, pd.Data
             metrics += difference_metrics(name + where, unit, *values)
         tables.append(together[0])
     return pd.concat(tables, ignore_index=True), pd.DataFrame(metrics)
+
+
+def measurement_metrics(points: pd.DataFrame, width_m: float) -> pd.DataFrame:
+    """How far the measurement is from what it must be: symmetric, and as many solids down as up.
+
+    Parameters
+    ----------
+    points : DataFrame
+        Of `read_points`.
+    width_m : float
+        Of the bed [m].
+
+    Returns
+    -------
+    DataFrame
+        quantity, source, value, unit: rms of half the difference of a profile and its mirror image, and the
+        mean over the width of (1 - voidage) velocity at each height of the velocity, beside the mean of its
+        size. The voidage is that of the nearest height.
+    """
+    rows = []
+    voidages = dict(list(points[points["quantity"] == "voidage_1"].groupby("height_m")))
+    for quantity, of_quantity in points.groupby("quantity", sort=False):
+        name, unit = QUANTITIES[quantity]
+        halves = [half_difference(at, width_m) for _, at in of_quantity.groupby("height_m")]
+        rows.append((f"{name}_asymmetry_rms", float(rms(np.concatenate(halves))), unit))
+    across = np.linspace(0, width_m, ACROSS)
+    for height, at in points[points["quantity"] == "particle_velocity_m_s"].groupby("height_m"):
+        if not voidages:
+            break
+        nearest = voidages[min(voidages, key=lambda other: abs(other - height))]
+        flux = (1 - interpolated(nearest, across)) * interpolated(at, across)
+        where = f"solids_flux_{1e3 * height:g}_mm"
+        rows += [(where, float(flux.mean()), "m/s"), (f"{where}_size", float(abs(flux).mean()), "m/s")]
+    return pd.DataFrame(rows, columns=["quantity", "value", "unit"]).assign(source="measured")
+
+
+def interpolated(profile_points: pd.DataFrame, x_m: np.ndarray) -> np.ndarray:
+    """Values of a measured profile at other positions across the bed [m], the outermost ones beyond it."""
+    ordered = profile_points.sort_values("position_x_m")
+    return np.interp(x_m, ordered["position_x_m"], ordered["value"])
+
+
+def half_difference(profile_points: pd.DataFrame, width_m: float) -> np.ndarray:
+    """Half the difference of a measured profile and its mirror image, at its points."""
+    mirrored = interpolated(profile_points, width_m - profile_points["position_x_m"].to_numpy())
+    return np.asarray((profile_points["value"].to_numpy() - mirrored) / 2)
 
 
 def read_points(file: Path) -> pd.DataFrame:

@@ -11,6 +11,7 @@ from bedchain.studies.validation import (
     BedFrames,
     compare,
     difference_metrics,
+    measurement_metrics,
     profile_left_out,
     read_points,
     rms,
@@ -63,6 +64,27 @@ def test_a_bed_compared_with_itself_differs_by_nothing_and_with_a_shift_by_the_s
     assert found["voidage_error_mean"] == pytest.approx(-0.03)
     assert found["voidage_15_mm_error_rms"] == pytest.approx(0.03)
     assert found["particle_velocity_error_rms"] == pytest.approx(0.0, abs=1e-12)
+
+
+def test_asymmetry_and_flux_of_a_measurement_by_hand():
+    x = np.array([0.01, 0.03])
+    rows = [
+        ("voidage_1", 0.01, x, np.array([0.5, 0.5])),
+        ("particle_velocity_m_s", 0.02, x, np.array([-0.1, 0.3])),
+    ]
+    points = pd.concat(
+        pd.DataFrame({"quantity": name, "height_m": height, "position_x_m": at, "value": value})
+        for name, height, at, value in rows
+    )
+    metrics = measurement_metrics(points, 0.04).set_index("quantity")["value"]
+    assert metrics["voidage_asymmetry_rms"] == 0
+    assert metrics["particle_velocity_asymmetry_rms"] == pytest.approx(0.2)
+    # half solids, -0.1 m/s up to 1 cm, 0.3 m/s from 3 cm on, linear between: the mean velocity is 0.1 m/s
+    assert metrics["solids_flux_20_mm"] == pytest.approx(0.05, rel=1e-3)
+    sizes = 0.25 * 0.1 + 0.25 * 0.3 + 0.5 * (0.25 * 0.05 + 0.75 * 0.15)
+    assert metrics["solids_flux_20_mm_size"] == pytest.approx(0.5 * sizes, rel=1e-3)
+    without = measurement_metrics(points[points["quantity"] != "voidage_1"], 0.04)
+    assert list(without["quantity"]) == ["particle_velocity_asymmetry_rms"]
 
 
 def test_rms_and_its_band_by_hand():

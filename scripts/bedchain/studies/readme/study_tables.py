@@ -105,10 +105,13 @@ def scores(results: Path) -> pd.DataFrame:
 
 
 def validation(results: Path) -> pd.DataFrame:
-    """Differences from measured profiles, with their aims."""
+    """Differences from measured profiles, of the simulated bed with its band and of others; aims."""
     table = pd.read_csv(results / "validation_metrics.csv")
-    kept = pd.DataFrame({"quantity": table["quantity"].str.replace("_", " "), "unit": table["unit"]})
-    return kept.assign(value=table["value"].map(number), aim=table["aim"].map(number)).astype(str)
+    kept = pd.DataFrame({"quantity": table["quantity"].str.replace("_", " "), "of": table["source"]})
+    low, high = (table[end].map(number) for end in ("ci_low", "ci_high"))
+    band = np.where(table["ci_low"].notna(), low + " to " + high, "")
+    numbers = {"value": table["value"].map(number), "95 % band": band, "aim": table["aim"].map(number)}
+    return kept.assign(unit=table["unit"], **numbers, met=table["met"].fillna("")).astype(str)
 
 
 def verification(results: Path) -> pd.DataFrame:

@@ -75,6 +75,12 @@ def gidaspow_beta(of: Suspension, e: float, slip: float) -> float:
     return ergun_beta(of, e, slip) if e < 0.8 else wen_yu_beta(of, e, slip)
 
 
+def gidaspow_blend_beta(of: Suspension, e: float, slip: float) -> float:
+    """Lu, Gidaspow 2003, Chem. Eng. Sci. 58, 3777: the two weighted by an arc tangent about 0.8 [kg/m3/s]."""
+    dilute = np.arctan(150 * 1.75 * (0.2 - (1 - e))) / np.pi + 0.5
+    return float((1 - dilute) * ergun_beta(of, e, slip) + dilute * wen_yu_beta(of, e, slip))
+
+
 def di_felice_beta(of: Suspension, e: float, slip: float) -> float:
     """Di Felice 1994, Int. J. Multiphase Flow 20, 153, eqs. (2), (14), (18) [kg/m3/s]."""
     re = of.reynolds(e * slip)
@@ -107,6 +113,7 @@ def koch_hill_beta(of: Suspension, e: float, slip: float) -> float:
 
 LAWS: dict[str, Law] = {
     "gidaspow": gidaspow_beta,
+    "gidaspow_blend": gidaspow_blend_beta,
     "wen_yu": wen_yu_beta,
     "di_felice": di_felice_beta,
     "beetstra": beetstra_beta,

@@ -95,9 +95,13 @@ def test_stability_counts_outcomes(tmp_path: Path) -> None:
 
 
 def test_validation_verification_peers_and_benchmark(tmp_path: Path) -> None:
-    pd.DataFrame([["voidage_rms", 0.0681, "1", 0.05]], columns=["quantity", "value", "unit", "aim"]).to_csv(
-        tmp_path / "validation_metrics.csv", index=False)  # fmt: skip
-    assert list(study_tables.validation(tmp_path).iloc[0]) == ["voidage rms", "1", "0.0681", "0.05"]
+    columns = ["quantity", "source", "value", "unit", "ci_low", "ci_high", "aim", "met"]
+    rows = [["voidage_rms", "dem", 0.0681, "1", 0.05, 0.09, 0.05, "no"],
+            ["asymmetry", "measured", 0.0154, "1", np.nan, np.nan, np.nan, ""]]  # fmt: skip
+    pd.DataFrame(rows, columns=columns).to_csv(tmp_path / "validation_metrics.csv", index=False)
+    table = study_tables.validation(tmp_path)
+    assert list(table.iloc[0]) == ["voidage rms", "dem", "1", "0.0681", "0.05 to 0.09", "0.05", "no"]
+    assert list(table.iloc[1])[3:] == ["0.0154", "", "", ""]
     pd.DataFrame([["u [m/s]", 0.77, 0.75, 0.1, "yes", "Ergun"]],
                  columns=["quantity", "value", "reference", "tolerance", "pass", "source"]).to_csv(
         tmp_path / "verification.csv", index=False)  # fmt: skip
