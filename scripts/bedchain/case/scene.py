@@ -46,6 +46,7 @@ def scene_of(case: Case) -> Scene:
         friction=contact["friction_1"],
         rolling=contact["rolling_friction_1"],
         cell=gas["cell_size_m"],
+        smoothing=gas["smoothing_diameters_1"] * diameter,
         gas=solved,
         layered=layered,
     )

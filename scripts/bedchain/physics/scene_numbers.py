@@ -33,6 +33,8 @@ class Scene:
         Of the contacts in the simulation [Pa], [1]; sliding and rolling friction.
     cell : float
         Edge of a gas cell [m].
+    smoothing : float
+        Length over which the voidage is smoothed [m].
     gas : bool
         Whether the gas is simulated.
     layered : bool
@@ -54,6 +56,7 @@ class Scene:
     friction: float
     rolling: float
     cell: float
+    smoothing: float
     gas: bool
     layered: bool
 

@@ -213,6 +213,14 @@ def force_criteria(scene: Scene) -> Iterator[Criterion]:
         1 / 1.63,
         "our choice, cells of 1.63 d average; Peng et al. 2014, AIChE J. 60, 2000, not verified", False, True,
     )  # fmt: skip
+    # A top hat of length L has the variance L^2/12, the hat kernel of half-width h the variance h^2/6
+    widened = scene.smoothing / (math.sqrt(2) * scene.cell)
+    yield Criterion(
+        "kernel wider than the hat of one gas cell", "smoothing length over that of the cells",
+        "L / (sqrt(2) cell)", widened, 1.0,
+        "derived: variances L^2 / 12 and cell^2 / 6; below 1 gas.smoothing_diameters_1 does nothing",
+        scene.gas and widened >= 1, True,
+    )  # fmt: skip
 
 
 def contact_criteria(scene: Scene) -> Iterator[Criterion]:

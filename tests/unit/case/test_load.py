@@ -14,7 +14,7 @@ ELSEWHERE = ("frames.", "network.")  # other sources than a simulation
 OPTIONAL = ("preset", "outside", "marks", "cells.layers", "cells.form", "cells.axis")
 
 
-@pytest.mark.parametrize("name", ["short", "paper", "mueller", "drum"])
+@pytest.mark.parametrize("name", ["short", "paper", "mueller", "mueller_06", "drum"])
 def test_shipped_cases_load_with_every_key(name):
     case = load_case(ROOT / "cases" / name / "case.yaml")
     for key in schema_keys(load_schema()):

@@ -160,3 +160,11 @@ def test_dust_in_a_drum_needs_the_gas_and_the_audit_says_that_it_is_not_there():
     case["bed"]["thickness_m"] = 1e-4
     rows = audit.audit(scene_of(case)).set_index("physics")
     assert list(rows.loc["gas flow", ["decision", "built", "agrees"]]) == ["keep", "no", "no"]
+
+
+def test_the_audit_says_which_kernel_smooths_the_voidage(scene):
+    physics = "kernel wider than the hat of one gas cell"
+    coarse = replace(scene, gas=True, smoothing=3e-3, cell=2.13e-3)
+    assert decision(coarse, physics) == "drop"
+    assert decision(replace(coarse, cell=2.12e-3), physics) == "keep"
+    assert (audit.audit(coarse).set_index("physics").loc[physics, "agrees"]) == "yes"
