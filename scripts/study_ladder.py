@@ -71,6 +71,7 @@ def study_ladder(
         answers += models.of_two_fluid(read_summary(record.parent), run.grid, case)
     try:
         answers.append(models.of_two_phase(case, run.grid, window_s))
+        answers.append(models.of_wakes(case, run.grid, window_s, run.interval_s))
     except RegimeError as error:
         LOG.info("two-phase: %s", error)
     answers.append(models.plug_flow(window_s, run.interval_s))

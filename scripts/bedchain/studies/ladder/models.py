@@ -11,6 +11,7 @@ from bedchain.case.parameters import weight_per_area
 from bedchain.case.scene import scene_of
 from bedchain.case.schema import Case
 from bedchain.chains import registry
+from bedchain.chains.networks.bubbling_wakes import Mechanisms, bubbling_wakes, remaining
 from bedchain.measures.mixing import GROUPS
 from bedchain.meter import forget_peak, peak_memory_mb
 from bedchain.physics.bubbling_bed import BubblingBed, bubbling_bed
@@ -88,11 +89,8 @@ def of_chain(
 def of_two_fluid(summary: Summary, shown: Grid, case: Case) -> Iterable[Answer]:
     """A two-fluid run, and the chain of its mean flow, which has circulation and no bubbles."""
     record = summary.record
-    cells = (
-        round(case["bed"]["height_m"] / record["cell_m"]),
-        round(case["bed"]["width_m"] / record["cell_m"]),
-    )
-    grid = Grid(cells[1], cells[0], case["bed"]["width_m"], case["bed"]["height_m"])
+    size = case["bed"]["width_m"], case["bed"]["height_m"]
+    grid = Grid(*size, *(round(length / record["cell_m"]) for length in size))
     values = of_density(regrid(summary.density["share_1"].to_numpy(), grid, shown), shown, case)
     window = summary.pressure["time_s"].between(*record["window_s"])
     values["pressure_drop"] = float(summary.pressure.loc[window, "pressure_drop_Pa"].mean())
@@ -152,6 +150,26 @@ def voidage_of_rows(bed: BubblingBed, grid: Grid, case: Case) -> Array:
     below = np.array([bed.share_below(edge) for edge in grid.z_edges_m])
     share = np.repeat(np.diff(below) / grid.columns, grid.columns)
     return np.asarray(of_density(share, grid, case)["voidage"])
+
+
+def of_wakes(case: Case, grid: Grid, window_s: float, interval_s: float) -> Answer:
+    """The axial chain with wakes and dispersion by the two-phase model; arguments as of `of_two_phase`.
+
+    Its cells are as high as those of the case; `interval_s` is the time between points of its curves [s].
+    """
+    times = np.asarray(interval_s * np.arange(round(window_s / interval_s) + 1), dtype=np.float64)
+
+    def curves() -> Array:
+        bed = bubbling_bed(scene_of(case))
+        cells = max(round(bed.bed_height / grid.cell_height_m), 2)
+        network = bubbling_wakes(bed, cells, Mechanisms(wakes=True, dispersed=True))
+        return remaining(network, case["mixing"]["split_z_m"], times)
+
+    axial, spent = timed(curves)
+    return Answer(
+        "axial wakes", {"mixing_axial": axial}, spent / window_s, lag_s=interval_s, paths=True,
+        note="wakes and dispersion by the two-phase model, nothing fitted",
+    )  # fmt: skip
 
 
 def plug_flow(window_s: float, interval_s: float) -> Answer:

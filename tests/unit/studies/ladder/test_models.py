@@ -7,7 +7,7 @@ import pytest
 from bedchain.case.load import load_case
 from bedchain.physics.two_phase import RegimeError
 from bedchain.studies.ladder.answers import of_density
-from bedchain.studies.ladder.models import of_two_phase, plug_flow, timed
+from bedchain.studies.ladder.models import of_two_phase, of_wakes, plug_flow, timed
 from bedchain.trajectory.grid import Grid
 from made import ROOT
 
@@ -46,3 +46,11 @@ def test_short_work_is_timed_by_many_runs():
     calls = []
     result, spent = timed(lambda: calls.append(1) or sum(range(10000)))
     assert result == sum(range(10000)) and len(calls) > 10 and 0 < spent < 0.1
+
+
+def test_wakes_say_axial_mixing_alone(case):
+    answer = of_wakes(case, Grid(0.1, 0.4, 10, 40), 2.0, 0.1)
+    assert set(answer.values) == {"mixing_axial"}
+    curves = answer.values["mixing_axial"]
+    assert curves.shape == (21, 2) and curves[0] == pytest.approx([1, 1])
+    assert (curves[-1] < 0.9).all() and (curves > 0).all()
