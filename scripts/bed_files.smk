@@ -20,31 +20,31 @@ OPEN = CASE.get("outside") == "exit"  # particles enter and leave
 SHAPE = {key: CASE["cells"][key] for key in ("form", "layers") if key in CASE["cells"]}
 SHAPE["outside"] = CASE.get("outside", "refuse")
 FLAT = not not_flat(**SHAPE)
-TRACK = "every_s" in CASE.get("frames", {})  # a few tracers, not located in each frame: no groups that mix
+TRACK = "every_s" in CASE.get("frames", {})  # a few tracers, not located in each frame
+MIXES = not (OPEN or TRACK)  # groups of particles stay in the bed, and mix
 CLAIMS = source_files(f"cases/{NAME}", "claims.csv")  # about both chains of the paper
 MODEL_FIGURES = {"static": "fig3_static", "dynamic": "fig4_dynamic"}
 PLOTS = [
     "fig1_cells",
     *([] if FRAMES else ["fig2_cost"]),
-    *([] if TRACK else [MODEL_FIGURES[model] for model in MODELS if model in MODEL_FIGURES]),
-    *(["fig_distribution_chosen"] if "chosen" in MODELS and not TRACK else []),
-    *([] if TRACK else ["fig5a_radial", "fig5b_axial"]),
+    *([MODEL_FIGURES[model] for model in MODELS if model in MODEL_FIGURES] if MIXES else []),
+    *(["fig_distribution_chosen"] if "chosen" in MODELS and MIXES else []),
+    *(["fig5a_radial", "fig5b_axial"] if MIXES else []),
     *(["snapshot"] if GAS else []),
     *(["fig_bubbles"] if GAS and not FRAMES else []),
-    *(["fig_difference"] if {*MODEL_FIGURES} <= {*MODELS} and not TRACK else []),
+    *(["fig_difference"] if {*MODEL_FIGURES} <= {*MODELS} and MIXES else []),
     "fig_chapman_kolmogorov",
     "fig_timescales",
-    *([] if TRACK or OPEN else ["fig_choice"]),
+    *(["fig_choice"] if MIXES else []),
     "fig_modes",
     "fig_stationarity",
     *(["fig_residence"] if OPEN else []),
     *(["fig_segregation"] if "marks" in CASE else []),
-    *(["fig_discussion"] if {*MODEL_FIGURES} & {*MODELS} and FLAT and not TRACK else []),
+    *(["fig_discussion"] if {*MODEL_FIGURES} & {*MODELS} and FLAT and MIXES else []),
 ]
 
 TABLES = [
-    *([] if TRACK else ["mixing.csv", "metrics.csv"]),
-    *([] if TRACK or OPEN else ["choice.csv"]),
+    *(["mixing.csv", "metrics.csv", "choice.csv"] if MIXES else []),
     "diagnostics.csv",
     "stationarity.csv",
     "timing.csv",
@@ -59,6 +59,6 @@ TABLES = [
 ]
 CASE_FILES = [
     *expand(f"{FIGURES}/{{name}}{{form}}", name=PLOTS, form=FORMS.values()),
-    *([] if TRACK else [f"{FIGURES}/film.mp4"]),
+    *([f"{FIGURES}/film.mp4"] if MIXES else []),
     *expand(f"{RESULTS}/{{name}}", name=TABLES),
 ]

@@ -332,7 +332,7 @@ rule write_provenance:
     input:
         code("write_provenance"),
         dem=TRAJECTORY["metadata"] if FRAMES else RUN["dem"],
-        metrics=[] if TRACK else rules.compare_mixing.output.metrics,
+        metrics=rules.compare_mixing.output.metrics if MIXES else [],
         timing=rules.time_models.output.timing,
     output:
         provenance=f"{RESULTS}/provenance.json",

@@ -19,10 +19,9 @@ OF_FRAMES = (
     ("noise floor of metrics.csv", "no repeats: the frames are there once"),
 )
 OF_FLAT_CELLS = "discussion.csv, fig_discussion; targets scores and tradeoff"
-OF_TRACERS = (
-    "mixing.csv, metrics.csv, choice.csv, discussion.csv, their figures, film.mp4",
-    "a few tracers, not located in each frame, are no groups that mix",
-)
+OF_GROUPS = "mixing.csv, metrics.csv, choice.csv, figures 3 to 5, film.mp4"
+TRACERS = "a few tracers, not located in each frame, are no groups that mix"
+LEAVING = "they follow particles of one frame, which leave the bed; residence.csv is of all"
 NO_VELOCITIES = (
     "velocities of the frames, motion.csv",
     "no velocities: differences of positions are taken",
@@ -57,9 +56,9 @@ def list_left_out(bed: BedFiles, left_out: Path, cells: Cells, imported: bool, t
     if not np.isfinite(values[0, 2:4]).any():
         rows.append(NO_VELOCITIES)
     if track:
-        rows.append(OF_TRACERS)
-    if cells.outside == "exit":
-        rows.append(("choice.csv, fig_choice", "the rule follows particles that stay in the bed"))
+        rows.append((OF_GROUPS, TRACERS))
+    elif cells.outside == "exit":
+        rows.append((OF_GROUPS, LEAVING))
     if reason := not_flat(cells.form, cells.layers, cells.outside):
         rows.append((OF_FLAT_CELLS, reason))
     table = pd.DataFrame(rows, columns=["product", "reason"])

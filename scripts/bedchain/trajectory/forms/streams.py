@@ -3,12 +3,13 @@
 
 import gzip
 import importlib
+import io
 import lzma
 import zlib
 from collections.abc import Iterator
 from contextlib import contextmanager
 from pathlib import Path
-from typing import IO
+from typing import IO, Any
 
 import numpy as np
 
@@ -22,6 +23,7 @@ MAGIC = {
     b"PK\x03\x04": "zip",
 }
 BLOCK_BYTES = 4 * 2**20
+PACKED_BYTES = 2**16  # of zstd at once: its content is unpacked as a whole
 MOST_LINE_BYTES = 65_536
 
 
@@ -60,13 +62,57 @@ def _unpacked(file: IO[bytes], packed: str | None, path: Path) -> IO[bytes]:
         return lzma.LZMAFile(file)
     if packed == "zst":
         try:
-            reader = importlib.import_module("zstandard").ZstdDecompressor().stream_reader
+            decompressor = importlib.import_module("zstandard").ZstdDecompressor()
         except ImportError as error:
             raise DataError(
                 f"{path} is compressed by zstd: unpack it (zstd -d), or pip install zstandard"
             ) from error
-        return reader(file, read_across_frames=True)
+        return io.BufferedReader(_ZstdFile(file, decompressor), BLOCK_BYTES)
     return file
+
+
+class _ZstdFile(io.RawIOBase):
+    """Content of a zstd file; zstandard's own reader takes a file that is cut off for one that ends."""
+
+    def __init__(self, file: IO[bytes], decompressor: Any) -> None:
+        self._file, self._decompressor = file, decompressor
+        self._frame = decompressor.decompressobj()
+        self._fed = False  # whether the frame has had any bytes
+        self._packed = self._content = b""
+
+    def readable(self) -> bool:
+        """Always."""
+        return True
+
+    def readinto(self, buffer: Any) -> int:
+        """Fill a buffer as far as there is content.
+
+        Raises
+        ------
+        EOFError
+            The file is cut off, or damaged.
+        """
+        while not self._content and self._next_block():
+            pass
+        size = min(len(buffer), len(self._content))
+        buffer[:size], self._content = self._content[:size], self._content[size:]
+        return size
+
+    def _next_block(self) -> bool:
+        """Unpack some more of the file; false at its end."""
+        self._packed = self._packed or self._file.read(PACKED_BYTES)
+        if not self._packed:
+            if self._fed:
+                raise EOFError("the file ended before its content")
+            return False
+        try:
+            self._content = self._frame.decompress(self._packed)
+        except Exception as error:  # zstandard's own, whose package may not be there to name it
+            raise EOFError(str(error)) from error
+        self._packed, self._fed = self._frame.unused_data, not self._frame.eof
+        if self._frame.eof:
+            self._frame = self._decompressor.decompressobj()
+        return True
 
 
 class Source:
@@ -88,10 +134,6 @@ class Source:
             return self._stream.read(BLOCK_BYTES)
         except CUT_OFF as error:
             raise DataError(f"the compressed content is damaged or cut off ({error})") from error
-        except Exception as error:  # zstandard's own error, whose package may not be there to name it
-            if type(error).__module__.startswith("zstd"):
-                raise DataError(f"the compressed content is damaged or cut off ({error})") from error
-            raise
 
     def line(self) -> bytes | None:
         """The next line with its end, None at the end; a last line may lack its end.

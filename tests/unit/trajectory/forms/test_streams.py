@@ -5,6 +5,7 @@ import gzip
 import io
 import lzma
 
+import numpy as np
 import pytest
 
 from bedchain.errors import DataError
@@ -46,6 +47,19 @@ def test_compressed_files_are_unpacked_and_damage_is_named(tmp_path):
         file.write_bytes(file.read_bytes()[:-20])
         with pytest.raises(DataError, match="damaged or cut off"), opened(file) as stream:
             Source(stream).lines(50)
+
+
+def test_zstd_is_unpacked_over_all_its_frames_and_a_cut_is_noticed(tmp_path):
+    zstandard = pytest.importorskip("zstandard")
+    content = bytes(np.random.default_rng(1).integers(65, 90, 300_000, np.uint8))
+    packed = zstandard.ZstdCompressor(write_checksum=True).compress(content)  # as zstd does
+    (file := tmp_path / "a.zst").write_bytes(packed + packed)
+    with opened(file) as stream:
+        assert stream.read() == content * 2
+    for wrong in (packed[:-3], packed[:8], packed + packed[:50], packed[:40] + b"x" * 40 + packed[80:]):
+        file.write_bytes(wrong)
+        with pytest.raises(DataError, match="damaged or cut off"), opened(file) as stream:
+            stream.read()
 
 
 def test_zstd_without_its_package_says_the_way_out(tmp_path, monkeypatch):

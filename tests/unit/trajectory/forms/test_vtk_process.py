@@ -35,9 +35,3 @@ def test_what_vtk_says_is_passed_on(process, tmp_path):
     (file := tmp_path / "frame_0.vtp").write_text('<?xml version="1.0"?><VTKFile type="PolyData"><Poly')
     with pytest.raises(DataError, match="VTK cannot read it"):
         process.read(file)
-
-
-def test_a_file_that_takes_too_long_is_given_up(tmp_path):
-    write_form("vtp", tmp_path, SERIES)
-    with pytest.raises(DataError, match="not read within 0 s"):
-        VtkProcess(longest_s=0.0).read(tmp_path / "frame_0.vtp")
