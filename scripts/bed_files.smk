@@ -2,7 +2,7 @@
 # Names and files of a bed of particles: what its rules share, and what a run of it makes.
 from bedchain.case.cell_checks import not_flat
 from bedchain.case.chosen import is_auto
-from bedchain.workflow import source_files
+from bedchain.rule_files import source_files
 
 MODELS = CASE["chain"]["models"]
 CHOICE = f"{RESULTS}/choice.csv"

@@ -59,8 +59,8 @@ def run_chain(
         raise UserError(f"{transitions} answers at whole steps only; {make_again(transitions)}")
     which = comparison.frames(run.times_s)
     length = which.stop - 1 - which.start
-    start = run.leading_to(model.grid, which.start, lag)
-    in_cells = run.leading_to(run.grid, which.start, lag, 0).cells[-1]
+    start = run.leading_to(model.grid, which.start, lag).seen_last()
+    in_cells = run.leading_to(run.grid, which.start, lag, 0).seen_last().cells[-1]
     marked = batch_of(run.grid, np.asarray(in_cells), batch.batch_height_m)[None]
     at = moment_frames(batch.moments_s, run.interval_s)
     for_mixing, for_batch = np.random.default_rng(settings.seed).spawn(2)

@@ -60,7 +60,7 @@ def time_models(
     for path in transitions:
         chain, fractions = registry.load(path), registry.load_fractions(path)
         model, lag = chain.name, Lag.of(chain.lag_s, run.interval_s)
-        start = in_memory(run.leading_to(chain.grid, which.start, lag.frames))
+        start = in_memory(run.up_to(comparison.start_s, lag.frames, chain.grid))
         options = settings.options.get(model, {})
         rows += learning_rows(model, of_grid(chain.grid), chain.grid, lag, settings.estimator, options)
         length = which.stop - 1 - which.start

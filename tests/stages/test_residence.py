@@ -8,12 +8,18 @@ import pandas as pd
 import pytest
 
 from assign_cells import Division, assign_cells
+from bedchain.chains.registry import ModelSettings
 from bedchain.errors import DataError
 from bedchain.figures.style import FigureFiles
+from bedchain.measures.batch import Batch
+from bedchain.measures.mixing import Splits
 from bedchain.trajectory.frames import Window
 from bedchain.trajectory.store import BedFiles
+from build_transitions import build_transitions
 from measure_residence import measure_residence
 from plot_residence import plot_residence
+from run_chain import run_chain
+from time_models import time_models
 
 INTERVAL_S, RIDES = 0.1, 0.8
 # 17 rides of 1/32 m lead out of a bed of 0.5 m, whose far wall belongs to it
@@ -56,6 +62,23 @@ def test_a_belt_has_the_residence_time_of_its_length_over_its_speed(belt, tmp_pa
     files = FigureFiles(tmp_path / "f.png", tmp_path / "f.pdf", tmp_path / "f.csv", 100)
     plot_residence(tmp_path / "r.csv", files, {"dem": "#222222", "chain": "#ee6677"})
     assert files.png.stat().st_size > 10_000 and len(pd.read_csv(files.csv)) == len(table)
+
+
+@pytest.mark.parametrize("model", ["static", "dynamic"])
+def test_chains_of_a_belt_start_from_who_is_there(belt, tmp_path, model):
+    assign_cells(belt, belt.cells, Division(10, 1), 0.01, "exit")
+    windows = {"learning": Window(5.0, 20.0), "comparison": Window(20.0, 20.5)}
+    file, splits, settings = tmp_path / "t.npz", Splits(0.25, 0.05), ModelSettings("pooled", 5)
+    build_transitions(belt, file, model, "pooled", INTERVAL_S, windows["learning"])
+    time_models([], belt, [file], tmp_path / "timing.csv", **windows, splits=splits, settings=settings)
+    assert (pd.read_csv(tmp_path / "timing.csv")["wall_s"] > 0).all()
+    run_chain(
+        belt, file, tmp_path / "chain.npz", **windows, splits=splits, batch=Batch(0.1, [0.1, 0.3]),
+        settings=settings,
+    )  # fmt: skip
+    chain = np.load(tmp_path / "chain.npz")
+    for name in ("batch_share", "batch_share_monte_carlo"):
+        np.testing.assert_allclose(chain[name].sum(axis=1), 1, rtol=1e-9)
 
 
 def test_a_particle_that_leaves_a_closed_bed_is_named(belt, tmp_path):
