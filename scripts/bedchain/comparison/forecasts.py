@@ -36,6 +36,8 @@ class Sides:
     still : (n_gaps, n_frames, 4) int64 array
         Particles of each group of a frame that are on its side so many frames later [1]; 0 beyond the end
         of the window.
+    seen : (n_gaps, n_frames, 4) int64 array, optional
+        Particles of each group of a frame that are anywhere so many frames later [1]; without it all are.
     """
 
     split_x_m: float
@@ -43,6 +45,7 @@ class Sides:
     marked: NDArray[np.bool_]
     gaps: NDArray[np.int64]
     still: NDArray[np.int64]
+    seen: NDArray[np.int64] | None = None
 
 
 def count_sides(frames: Frames, split_x_m: float, split_z_m: float, gaps: Sequence[int]) -> Sides:
@@ -75,7 +78,14 @@ def count_sides(frames: Frames, split_x_m: float, split_z_m: float, gaps: Sequen
     for row, gap in enumerate(gaps):
         both = bits[: n_frames - gap] & bits[gap:]
         still[row, : n_frames - gap] = np.bitwise_count(both).sum(axis=2, dtype=np.int64)
-    return Sides(split_x_m, split_z_m, marked, np.asarray(gaps, np.int64), still)
+    gaps_array = np.asarray(gaps, np.int64)
+    there = marked[:, :1] | marked[:, 1:2]
+    if there.all():
+        return Sides(split_x_m, split_z_m, marked, gaps_array, still)
+    seen = np.zeros_like(still)
+    for row, gap in enumerate(gaps):
+        seen[row, : n_frames - gap] = (marked[: n_frames - gap] & there[gap:]).sum(axis=2)
+    return Sides(split_x_m, split_z_m, marked, gaps_array, still, seen)
 
 
 def counted(sides: Sides, weights: NDArray[np.int64] | None = None) -> NDArray[np.float64]:
@@ -90,14 +100,17 @@ def counted(sides: Sides, weights: NDArray[np.int64] | None = None) -> NDArray[n
     Returns
     -------
     (n_gaps, 4) array
-        Over all starts in the window [1].
+        Over all starts in the window whose particle is seen at both ends [1].
     """
     n_frames = len(sides.marked)
     times = np.ones(n_frames, np.int64)
     if weights is not None:
         times = np.concatenate((weights, np.zeros(n_frames - len(weights), np.int64)))
-    size = sides.marked.sum(axis=2)
-    began = np.array([times[: n_frames - gap] @ size[: n_frames - gap] for gap in sides.gaps])
+    if sides.seen is not None:
+        began = np.einsum("f,gfs->gs", times, sides.seen)
+    else:
+        size = sides.marked.sum(axis=2)
+        began = np.array([times[: n_frames - gap] @ size[: n_frames - gap] for gap in sides.gaps])
     stayed = np.einsum("f,gfs->gs", times, sides.still)
     return np.divide(stayed, began, out=np.full(stayed.shape, np.nan), where=began > 0)
 

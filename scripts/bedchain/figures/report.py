@@ -60,7 +60,7 @@ def bed_section(folder: Path, captions: dict[str, Path], figures: list[Path]) ->
     if written := "network" in record["case"]["values"]:
         outcome, table = network_table(folder / "metrics.csv"), ""
     else:
-        outcome = claims_table(claims) if claims.exists() else outcome_table(folder / "metrics.csv")
+        outcome = claims_table(claims) if claims.exists() else outcome_of(folder)
         table = (folder / "table1.html").read_text(encoding="utf-8")
     return {
         "name": folder.name,
@@ -89,6 +89,15 @@ def claims_table(file: Path) -> str:
         }
     )
     return shown.to_html(index=False, border=0)
+
+
+def outcome_of(folder: Path) -> str:
+    """`outcome_table` of a bed or, of an open bed and of tracers, what is left out, as html."""
+    if (file := folder / "left_out.csv").exists():
+        left_out = pd.read_csv(file)
+        if left_out["product"].str.contains("metrics.csv,").any():
+            return left_out.rename(columns={"product": "left out"}).to_html(index=False, border=0)
+    return outcome_table(folder / "metrics.csv")
 
 
 def outcome_table(file: Path) -> str:

@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """The Markov test on particles that are Markov, and on particles that are not."""
 
+from dataclasses import replace
 from functools import partial
 
 import numpy as np
@@ -42,6 +43,15 @@ def test_lags_double_while_the_window_holds_five_steps():
     assert doubled_lags(2, 81) == [2, 4, 8, 16]
     assert doubled_lags(2, 80) == [2, 4, 8]
     assert doubled_lags(30, 40) == [30]
+
+
+def test_who_is_not_there_has_not_changed_sides():
+    frames = walkers(0.1, 3)
+    whole = counted(count_sides(frames, *SPLITS, [1, 5]))
+    absent = np.random.default_rng(1).random(frames.x_m.shape) < 0.3
+    x, z = (np.where(absent, np.nan, part) for part in (frames.x_m, frames.z_m))
+    some = counted(count_sides(replace(frames, x_m=x, z_m=z), *SPLITS, [1, 5]))
+    np.testing.assert_allclose(some, whole, atol=0.01)
 
 
 def test_a_memory_of_the_direction_is_seen_by_the_static_chain_and_not_by_the_dynamic_one():

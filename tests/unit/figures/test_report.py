@@ -58,6 +58,16 @@ def test_a_figure_without_a_caption_is_refused(bed):
         embedded(folder / "figures" / "film.mp4", {"fig1_cells": captions["film"]})
 
 
+def test_a_bed_without_metrics_shows_what_is_left_out(bed):
+    folder, captions = bed
+    left_out = pd.DataFrame(
+        {"product": ["mixing.csv, metrics.csv, film.mp4"], "reason": ["they leave the bed"]}
+    )
+    left_out.to_csv(folder / "left_out.csv", index=False)
+    (folder / "metrics.csv").unlink()
+    assert "they leave the bed" in bed_section(folder, captions, [])["outcome"]
+
+
 def test_metrics_that_matter_stand_by_group(bed):
     text = outcome_table(bed[0] / "metrics.csv")
     assert "81000" not in text
