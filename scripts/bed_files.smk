@@ -24,6 +24,7 @@ TRACK = "every_s" in CASE.get("frames", {})  # a few tracers, not located in eac
 MIXES = not (OPEN or TRACK)  # groups of particles stay in the bed, and mix
 CLAIMS = source_files(f"cases/{NAME}", "claims.csv")  # about both chains of the paper
 MODEL_FIGURES = {"static": "fig3_static", "dynamic": "fig4_dynamic"}
+STATIC = [model for model in ("static", "chosen") if model in MODELS]  # chains whose states are cells
 PLOTS = [
     "fig1_cells",
     *([] if FRAMES else ["fig2_cost"]),
@@ -40,6 +41,7 @@ PLOTS = [
     "fig_stationarity",
     *(["fig_residence"] if OPEN else []),
     *(["fig_segregation"] if "marks" in CASE else []),
+    *(["fig_scalar"] if "scalar" in CASE and STATIC and FLAT else []),
     *(["fig_discussion"] if {*MODEL_FIGURES} & {*MODELS} and FLAT and MIXES else []),
 ]
 

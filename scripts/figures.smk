@@ -132,6 +132,14 @@ FIGURE_RULES |= {
             }
         },
     },
+    "plot_scalar": {
+        "name": "fig_scalar",
+        "input": {"transitions": [f"{RESULTS}/transitions_{model}.npz" for model in STATIC]},
+        "params": {
+            **CASE.get("scalar", {"wall_loss_1_s": 1.0, "wall_m": 0.0}),
+            "colours": {model: COLOURS[model] for model in STATIC},
+        },
+    },
     "plot_residence": {
         "name": "fig_residence",
         "input": {"residence": f"{RESULTS}/residence.csv"},

@@ -10,7 +10,7 @@ from bedchain.physics.whole_numbers import is_multiple
 from made import ROOT
 from made.case_text import END, assert_refused, changed_case
 
-ELSEWHERE = ("frames.", "network.")  # other sources than a simulation
+ELSEWHERE = ("frames.", "network.", "scalar.")  # other sources than a simulation, or not asked
 OPTIONAL = ("preset", "outside", "marks", "cells.layers", "cells.form", "cells.axis")
 
 
