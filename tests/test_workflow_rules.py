@@ -12,7 +12,7 @@ from made.workflow import ALL, SCORES, STABLE, TRADEOFF, linked, modules_behind,
 SCRIPTS = ROOT / "scripts"
 OTHERS = {
     *("validate_bed", "write_agreement", "estimate_cost", "list_left_out"),
-    *("measure_residence", "plot_residence", "measure_segregation", "plot_segregation"),
+    *("measure_residence", "plot_residence", "measure_segregation", "plot_segregation", "plot_scalar"),
 }
 BY_SHELL = {"verify_solver", "compare_peers", "study_stability", "study_bands", "study_tradeoff"}
 
