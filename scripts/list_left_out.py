@@ -57,6 +57,9 @@ def list_left_out(bed: BedFiles, left_out: Path, cells: Cells, imported: bool, t
         rows.append(NO_VELOCITIES)
     if track:
         rows.append((OF_GROUPS, TRACERS))
+        rows.append(
+            ("fig_timescales, fig_modes", "a short track shows no slow process: ask for them by name")
+        )
     elif cells.outside == "exit":
         rows.append((OF_GROUPS, LEAVING))
     if reason := not_flat(cells.form, cells.layers, cells.outside):
