@@ -12,6 +12,7 @@ from bedchain.dem.series import read_series
 from bedchain.files import write_csv
 from bedchain.physics.two_phase import RegimeError
 from bedchain.stage import LOG, run_stage
+from bedchain.studies.cost.window_time import dem_row
 from bedchain.studies.ladder import models
 from bedchain.studies.ladder.answers import Answer, ladder_rows
 from bedchain.studies.ladder.simulated import dem_rows, read_curves, truth_of
@@ -20,7 +21,6 @@ from bedchain.trajectory.frames import Window
 from bedchain.trajectory.grid import Grid
 from bedchain.trajectory.realisations import Realisation, open_bed
 from bedchain.trajectory.store import BedFiles, read_manifest
-from time_models import dem_row
 
 LEARNED = ("velocity_class", "jump", "recurrence")  # beside the static and dynamic chains
 

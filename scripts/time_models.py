@@ -15,11 +15,11 @@ from bedchain.chains.between_steps import Fractions, learn_fractions, mixing_by_
 from bedchain.chains.chain import Chain
 from bedchain.chains.estimators import transition_matrix
 from bedchain.chains.registry import ModelSettings
-from bedchain.errors import UserError
 from bedchain.files import write_csv
 from bedchain.measures.mixing import Splits
 from bedchain.meter import forget_peak, peak_memory_mb
 from bedchain.stage import LOG, run_stage
+from bedchain.studies.cost.window_time import Row, dem_row
 from bedchain.trajectory.frames import Frames, Lag, Window
 from bedchain.trajectory.grid import Grid
 from bedchain.trajectory.realisations import open_bed
@@ -29,8 +29,6 @@ from bedchain.trajectory.store import BedFiles, read_manifest
 REPEATS = 15
 ENOUGH_S = 5.0
 FEWEST = 3
-
-Row = dict[str, Any]
 
 
 def time_models(
@@ -68,39 +66,6 @@ def time_models(
     write_csv(pd.DataFrame(rows), timing)
     for row in rows:
         LOG.info("%-22s %.4g s", row["stage"], row["wall_s"])
-
-
-def dem_row(manifest: dict[str, Any], start_s: float, end_s: float) -> Row:
-    """Time that the DEM took for a window, segments that stick out of it counted by their part.
-
-    Parameters
-    ----------
-    manifest : dict
-        Of the DEM run.
-    start_s, end_s : float
-        The window [s].
-
-    Returns
-    -------
-    dict
-
-    Raises
-    ------
-    UserError
-        The segments do not cover the window.
-    """
-    wall = covered = 0.0
-    for segment in manifest["segments"]:
-        inside = max(0.0, min(end_s, segment["end_s"]) - max(start_s, segment["start_s"]))
-        wall += segment["wall_s"] * inside / (segment["end_s"] - segment["start_s"])
-        covered += inside
-    if abs(covered - (end_s - start_s)) > manifest["frame_interval_s"] / 2:
-        raise UserError(f"dem.json: its segments cover {covered:g} s of the {end_s - start_s:g} s to compare")
-    work = manifest["number"] * (end_s - start_s) / manifest["dem_step_s"]
-    return {
-        "stage": "dem", "wall_s": wall, "cpu_s": wall * manifest["ranks"], "peak_rss_mb": np.nan,
-        "work": round(work), "work_unit": "particle steps",
-    }  # fmt: skip
 
 
 def learning_rows(

@@ -7,7 +7,6 @@ import pytest
 
 from bedchain.chains.registry import ModelSettings
 from bedchain.errors import UserError
-from bedchain.trajectory.store import read_manifest
 from made.drawings import COLOURS, assert_drawn, outputs
 from made.small_bed import (
     BATCH,
@@ -25,7 +24,7 @@ from plot_cells import plot_cells
 from plot_cost import cost_table, plot_cost, readable_ratio, readable_seconds, where_it_ran
 from plot_distribution import plot_distribution
 from plot_mixing import bands, plot_mixing
-from time_models import dem_row, time_models
+from time_models import time_models
 
 
 @pytest.fixture(scope="session")
@@ -97,16 +96,6 @@ def test_timing_has_every_stage(timing):
     assert (kernels["peak_rss_mb"] > 10).all()
     moves = kernels.set_index("stage").loc["static_monte_carlo"]
     assert (moves["work"], moves["work_unit"]) == (40 * NUMBER, "particle moves")
-
-
-def test_dem_time_of_a_window_counts_parts_of_segments(bed):
-    manifest = read_manifest(bed.dem)
-    # segments of 0.5 s that took 9 s each: one whole, and half of two
-    row = dem_row(manifest, 0.75, 1.75)
-    assert row["wall_s"] == pytest.approx(18)
-    assert row["work"] == NUMBER * 50000
-    with pytest.raises(UserError, match="segments cover"):
-        dem_row(manifest, 2.0, 4.0)
 
 
 def test_fig2_has_the_ratios_to_the_dem(timing, bed, tmp_path):
