@@ -28,6 +28,8 @@ FRAMES_PER_SECOND = 20
 # constant quality: a bit rate would blur the clock; at 40 a chain's single particles melt into blots, at 32
 # files are 1.7 times as large and look the same; more effort takes 2.4 times the time and saves 2 %
 QUALITY, EFFORT = "36", "veryfast"
+# colours get more bits than light: particles of two or three pixels go grey without
+COLOURS = "chroma-qp-offset=-12"
 # freeboard without particles is not shown, but for this share of the height shown
 FREEBOARD = 0.1
 VOIDAGE_COLOURS, VOIDAGE_LIMITS = "Blues_r", (0.35, 1.0)
@@ -138,7 +140,7 @@ def write_film(film: Path, shape: tuple[int, int], pictures: Iterable[NDArray[np
     with atomic_file(film) as temporary:
         writer = imageio_ffmpeg.write_frames(
             str(temporary), shape[::-1], fps=FRAMES_PER_SECOND, quality=None, macro_block_size=2,
-            output_params=["-crf", QUALITY, "-preset", EFFORT],
+            output_params=["-crf", QUALITY, "-preset", EFFORT, "-x264-params", COLOURS],
         )  # fmt: skip
         writer.send(None)
         for picture in pictures:

@@ -66,7 +66,8 @@ def test_without_a_case_the_short_bed_is_simulated_and_the_paper_s_unpacked(with
     archived = {rule.removeprefix("paper_") for rule in jobs if rule.startswith("paper_")}
     assert {rule for rule in jobs if not rule.startswith("paper_")} == ALL
     # one report shows both beds
-    assert archived == ALL - BED - {"write_report"} | {"unpack_reference", "write_agreement"}
+    of_paper = {"unpack_reference", "write_agreement", "plot_scalar"}
+    assert archived == ALL - BED - {"write_report"} | of_paper
 
 
 def test_an_archived_bed_is_unpacked_and_no_solver_runs(with_archive):
@@ -103,7 +104,8 @@ def test_the_tradeoff_simulates_variants_only_of_what_is_simulated(with_archive,
 
 def test_a_scene_without_gas_asks_for_nothing_of_openfoam(tmp_path):
     jobs = plan(linked(tmp_path, "openfoam_case"), case="drum").jobs
-    assert set(jobs) == ALL - {"build_solver", "plot_snapshot", "repeat_dem", "measure_mixing"}
+    no_gas = {"build_solver", "plot_snapshot", "plot_bubbles", "repeat_dem", "measure_mixing"}
+    assert set(jobs) == ALL - no_gas
 
 
 def test_an_unknown_case_or_preset_is_answered_by_the_known_ones(empty, refused):

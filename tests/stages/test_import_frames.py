@@ -37,7 +37,8 @@ def test_periodic_sides_are_named_and_particles_put_back(tmp_path, caplog):
         (tmp_path / f"f{frame}.dump").write_text(text_frame(series, frame, flags="pp ff pp"))
     targets = Targets(*(tmp_path / name for name in ("trajectory.npy", "trajectory.json", "particles.npz")))
     tables = Tables(*(tmp_path / f"{name}.csv" for name in ("bed_series", "motion")))
-    import_frames(SECTION, tmp_path, Box(0.1, 0.25, "refuse"), targets, tables, progress=False)
+    with caplog.at_level(logging.INFO, "bedchain"):
+        import_frames(SECTION, tmp_path, Box(0.1, 0.25, "refuse"), targets, tables, progress=False)
     place = np.load(targets.trajectory)[2, 0, np.argsort(np.argsort(series.ids))[4]]
     assert place == np.float32(series.positions[2, 4, 0] - 0.1 + 0.05)
     assert "periodic along x, each 0.1 m: who leaves at one side" in caplog.text

@@ -221,7 +221,7 @@ def test_figures_of_the_scores_are_drawn(walkers, tmp_path):
     plot_pareto(walkers.scores, walkers.selection, outputs(tmp_path, "p"), 0.01, 0.025)
     pareto = assert_drawn(tmp_path, "p")
     assert len(pareto) == 3 + 2 * 4 and (pareto["cost_s"] > 0).all()
-    assert set(pareto["source"]) == {"static", "static_baseline", "velocity_class"}
+    assert set(pareto["source"]) == {"static", "static_baseline", "velocity_class", "chosen"}
     plot_best_mixing(walkers.mixing, walkers.selection, outputs(tmp_path, "b"), "#222222", "#ee6677")
     curves = assert_drawn(tmp_path, "b")
     assert {"dem", "dem_1", "dem_2", "static_baseline", "velocity_class"} < set(curves["source"])

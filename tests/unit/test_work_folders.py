@@ -26,6 +26,7 @@ REMOVERS = {
     "segments.keep_own_frames",  # a frame of the segment that was just simulated
     "variant_run.simulate",  # the log of the run before
     "simulated_beds.bed_observables",  # the trajectory that it has just written
+    "two_fluid.keep_frames",  # OpenFOAM's fields of the segment that was just simulated
     "benchmark_core.run_task",  # particles that it has just drawn, in a temporary folder
 }
 REMOVING = {"rmtree", "unlink", "rmdir", "remove", "removedirs"}

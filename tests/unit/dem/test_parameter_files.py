@@ -47,7 +47,7 @@ def test_a_bed_too_large_for_the_memory_leaves_no_file(tmp_path):
     small.mkdir()
     file = changed_case(small, large, (END, "  allow_unstable_step: true\n" + END))
     text = file.read_text()
-    file.write_text(text + "contact: {young_modulus_Pa: 1.0e+7}\n")
+    file.write_text(text + "contact: {young_modulus_Pa: 1.0e+7}\ngas: {viscosity_Pa_s: 1.0e-9}\n")
     with pytest.raises(UserError, match="the simulation needs about|learning the chains needs about"):
         write_parameters(file, tmp_path / "large")
     assert not (tmp_path / "large").exists()

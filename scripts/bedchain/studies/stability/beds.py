@@ -16,6 +16,7 @@ GAS_DENSITY, VISCOSITY, POISSON, FRICTION = 1.2, 1.8e-5, 0.3, 0.1
 USUAL_SHARE = 0.18  # of the Rayleigh time
 FRAME, SETTLE, RUN, RAMP = 4e-3, 0.15, 0.06, 0.02  # [s], of particles of 1 mm; times go with sqrt(d / g)
 GAS_STEP = 5e-4  # [s], likewise
+SMOOTHING = 3.0  # of the voidage, in diameters; the schema's
 FEWEST_FRAMES = 8  # two windows of four
 FEWEST_GAS_STEPS = 80  # bed_series.csv has a row for ten of them
 SPLIT_DIAMETERS = 10  # height of lines that a case must have; the study does not use them
@@ -155,6 +156,7 @@ def scene(bed: StabilityBed) -> Scene:
     """
     case = case_of(bed)
     case["bed"]["layers"], case["gas"]["model"] = "one", "coupled"
+    case["gas"].setdefault("smoothing_diameters_1", SMOOTHING)
     return scene_of(case)
 
 
