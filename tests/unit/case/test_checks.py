@@ -14,7 +14,8 @@ from made import ROOT
 NAMES = {
     "axes_differ", "frames_are_in_metres", "frames_have_no_repeats", "windows_lie_in_the_frames",
     "a_box_has_gas_and_a_drum_has_none", "a_revolution_has_frames", "cells_can_be_counted",
-    "chains_have_one_builder", "colour_maps_exist", "colours_exist", "drag_follows_collisions", "earlier_velocities_are_in_the_window",
+    "chains_have_one_builder", "colour_maps_exist", "colours_exist", "drag_follows_collisions",
+    "earlier_velocities_are_in_the_window",
     "jumps_of_the_recurrence_have_targets", "lags_of_the_discussion_fit",
     "moments_rise",
     "cells_hold_particles", "cells_of_the_recurrence_hold_particles",
