@@ -2,9 +2,6 @@
 //
 // Momentum of the gas, model A, over the gas density:
 //   d(e U)/dt + div(e U U) = -e grad(p) + div(e tau) + dragSource - dragRate U
-//
-// The flux is the last step's and the voidage this one's: the gas that they would make of nothing brings no
-// momentum, its share d(e)/dt + div(e U) times U is taken out.
 
 #include "fvCFD.H"
 
@@ -19,14 +16,12 @@ tmp<fvVectorMatrix> bedFoam::solveMomentum(
     const surfaceScalarField voidagePhi("voidagePhi", voidagef * gas.phi);
     const volScalarField effectiveViscosity("effectiveViscosity", solids.voidage * viscosity);
 
-    const volScalarField excess("excess", fvc::ddt(solids.voidage) + fvc::div(voidagePhi));
     const tmp<volVectorField> stressOfTranspose =
         fvc::div(effectiveViscosity * dev2(T(fvc::grad(U))), "div(viscousStress)");
 
     tmp<fvVectorMatrix> UEqn(
         fvm::ddt(solids.voidage, U)                 // rate
             + fvm::div(voidagePhi, U)               // convection
-            - fvm::Sp(excess, U)                    // momentum of gas made of nothing
             - fvm::laplacian(effectiveViscosity, U) // viscous stress: of the gradient
             - stressOfTranspose                     // and of its transpose
             + fvm::Sp(solids.dragRate, U)           // drag

@@ -30,8 +30,9 @@ double ergun(const bedFoam::DragState& s)
 }
 
 const std::vector<std::pair<std::string, bedFoam::DragLaw>> laws{
-    {"gidaspow", bedFoam::gidaspow}, {"gidaspow_blend", bedFoam::gidaspowBlend}, {"wen_yu", bedFoam::wenYu},
-    {"di_felice", bedFoam::diFelice}, {"beetstra", bedFoam::beetstra}, {"koch_hill", bedFoam::kochHill},
+    {"gidaspow", bedFoam::gidaspow}, {"gidaspow_blend", bedFoam::gidaspowBlend},
+    {"wen_yu", bedFoam::wenYu},      {"di_felice", bedFoam::diFelice},
+    {"beetstra", bedFoam::beetstra}, {"koch_hill", bedFoam::kochHill},
 };
 
 }
