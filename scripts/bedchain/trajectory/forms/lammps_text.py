@@ -172,8 +172,10 @@ def number_table(
     Raises
     ------
     DataError
-        A line has more or fewer words than columns, or a word that is no number.
+        A line has more or fewer words than columns, or a word that is no number; no column is wanted.
     """
+    if not wanted:
+        raise DataError("none of its columns is an id, a place or a velocity: name them in frames.columns")
     _check_words(body, separator, columns)
     try:
         with warnings.catch_warnings():

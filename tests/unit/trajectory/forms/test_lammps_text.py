@@ -70,6 +70,12 @@ def test_a_line_with_a_fault_is_refused(old, new):
         frame.load()
 
 
+def test_columns_that_nothing_is_known_of_are_refused():
+    (frame,) = frames("".join(ITEMS.values()).replace(" id xs y z ", " c_1 c_2 c_3 c_4 "))
+    with pytest.raises(DataError, match="none of its columns is an id, a place or a velocity"):
+        frame.load()
+
+
 @pytest.mark.parametrize("kept", [5, 20, 60, 95, -1])
 def test_a_cut_end_is_told_from_a_fault(kept):
     with pytest.raises(CutOffError, match="cut off"):
