@@ -21,6 +21,8 @@ DIGITS = 1e-6
 LARGEST_ERROR = 0.2
 # of a step, where a line between two groups cuts cells: their particles are spread over both sides
 CUT_CELLS = 0.01
+# a particle of half a million moves that ends in a cell which none leaves in the window: the estimator sends part of it elsewhere
+DEAD_ENDS = 1e-5
 # of Lacey's index at the start: where the line cuts no cell, and where the middle column holds both groups
 START, CUT_START = 0.01, 0.03
 
@@ -95,7 +97,7 @@ def test_one_step_of_a_pooled_static_chain_is_what_was_counted(table, case):
     assert set(steps["part"]) == set(GROUPS)
     for row in steps.itertuples():
         cut = row.part in ("left", "right") and middle_is_cut(case)
-        assert row.value == pytest.approx(seen[row.part, row.time_s], abs=CUT_CELLS if cut else DIGITS)
+        assert row.value == pytest.approx(seen[row.part, row.time_s], abs=CUT_CELLS if cut else DEAD_ENDS)
 
 
 def test_chapman_kolmogorov_errors_are_small_and_in_their_bands(table, models, case):
