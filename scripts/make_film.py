@@ -25,8 +25,8 @@ from bedchain.trajectory.realisations import Realisation, open_bed
 from bedchain.trajectory.store import BedFiles
 
 FRAMES_PER_SECOND = 20
-# constant quality: a bit rate would blur the clock; at 40 a chain's single particles melt into blots, at 32 files
-# are 1.7 times as large; more effort takes 2.4 times the time and saves 2 %
+# constant quality: a bit rate would blur the clock; at 40 a chain's single particles melt into blots, at 32
+# files are 1.7 times as large; more effort takes 2.4 times the time and saves 2 %
 QUALITY, EFFORT = "36", "veryfast"
 # colours get more bits than light: particles of two or three pixels go grey without
 COLOURS = "chroma-qp-offset=-6"
