@@ -22,6 +22,7 @@ LOG = logging.getLogger(__name__)
 # of an interval: times of tables have few digits
 UNEVEN = 1e-3
 BOX_DIGITS = 3  # of a box that is made of the particles' positions
+SHORTEST = 1e-300  # of a span; its digits would be no numbers
 STEPS = " by frames.first_step and frames.last_step"
 DIGITS = 12  # of a time, so that 12000 steps of 1e-5 s are 0.12 s
 
@@ -218,7 +219,7 @@ def _bounds(entries: Sequence[Entry], settings: FrameSettings) -> np.ndarray:
 
 def rounded_outwards(low: float, high: float) -> tuple[float, float]:
     """Ends of a span, the span a little longer so that it is a number of few digits."""
-    if not high > low:
+    if not high - low > SHORTEST:
         return low, high
     if not math.isfinite(high - low):
         raise UserError(f"particles from {low:g} to {high:g}: some positions are no lengths")

@@ -136,3 +136,4 @@ def test_spans_are_rounded_outwards():
         low <= -0.0419919 and high >= 0.0378810 and high - low < 0.0802
     )
     assert rounded_outwards(0.0, 0.0) == (0.0, 0.0)
+    assert rounded_outwards(0.0, 5e-310) == (0.0, 5e-310)  # of a damaged file
