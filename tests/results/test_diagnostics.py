@@ -21,7 +21,8 @@ DIGITS = 1e-6
 LARGEST_ERROR = 0.2
 # of a step, where a line between two groups cuts cells: their particles are spread over both sides
 CUT_CELLS = 0.01
-# a particle of half a million moves that ends in a cell which none leaves in the window: the estimator sends part of it elsewhere
+# a particle of half a million moves that ends in a cell which none leaves in the window: the estimator sends
+# part of it elsewhere
 DEAD_ENDS = 1e-5
 # of Lacey's index at the start: where the line cuts no cell, and where the middle column holds both groups
 START, CUT_START = 0.01, 0.03
