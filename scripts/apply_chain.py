@@ -81,9 +81,9 @@ def apply_chain(transitions: Path, bed: Path, start: Start) -> Path:
     UserError
         A file is missing, the bed is of another size or frame interval, or no particle is on the side.
     """
-    for file, target in ((transitions, transitions), (bed / "trajectory.npy", bed / "trajectory.npy")):
+    for file in (transitions, bed / "trajectory.npy"):
         if not file.exists():
-            raise UserError(f"{file} is missing: ./run {target}")
+            raise UserError(f"{file} is missing: ./run {file}")
     run = open_realisation(str(bed), bed / "trajectory.npy", bed / "trajectory.json")
     chain = registry.load(transitions)
     check_fit(transitions, chain, run)

@@ -11,18 +11,16 @@ from bedchain.case.scene import scene_of
 from bedchain.case.schema import Case
 from bedchain.figures.style import DOUBLE_COLUMN_IN, FigureFiles, figure_style, footnote
 from bedchain.files import write_csv
-from bedchain.measures.bubbles import bubble_table, by_height, rises, voidage_map
-from bedchain.physics.bubbling_bed import MINIMUM_VOIDAGE, BubblingBed, bubbling_bed
+from bedchain.measures.bubbles import VOID, by_height, followed_bubbles, voidage_maps
+from bedchain.measures.voidage import Slab
+from bedchain.physics.bubbling_bed import BubblingBed, bubbling_bed
 from bedchain.physics.two_phase import RegimeError
 from bedchain.stage import LOG, run_stage
 from bedchain.trajectory.frames import Window
 from bedchain.trajectory.store import BedFiles
 
-VOID = (1 + MINIMUM_VOIDAGE) / 2  # a bubble ends half way between minimum fluidization and no particles
 ROWS = 24  # of the profiles, over the height that holds `SHOWN_SHARE` of the particles
 SHOWN_SHARE = 0.999
-# no bubble is taken to rise faster: times sqrt(g W), the fall through the bed's width
-FASTEST = 3.0
 QUANTITIES = {
     "voidage_1": ("voidage", "1"),
     "diameter_m": ("bubble diameter", "m"),
@@ -61,11 +59,9 @@ def plot_bubbles(
     frames = window.frames(np.array(described["times_s"]))
     cell_m, interval_s = case["gas"]["cell_size_m"], described["frame_interval_s"]
     size = described["height_m"], described["width_m"]
-    shape = round(size[0] / cell_m), round(size[1] / cell_m)
-    solids = np.pi / 6 * case["particles"]["diameter_m"] ** 3 / case["bed"]["thickness_m"]
-    maps = np.array([voidage_map(frame[0], frame[1], shape, size, solids) for frame in store[frames]])
-    table = bubble_table(maps, cell_m, VOID)
-    risen = rises(table, interval_s, FASTEST * np.sqrt(9.81 * size[1]))
+    slab = Slab(case["bed"]["thickness_m"], case["particles"]["diameter_m"])
+    maps = np.array([*voidage_maps(store[frames], size, cell_m, slab)])
+    table, risen = followed_bubbles(maps, cell_m, interval_s, size[1])
     profile = maps.mean(axis=(0, 2))
     edges = np.linspace(0, top_of(profile, cell_m), ROWS + 1)
     measured = by_height(table, risen, edges, interval_s * (len(maps) - 1))

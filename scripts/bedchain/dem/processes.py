@@ -221,6 +221,12 @@ def error_lines(log: Path) -> str:
     return "\n".join("  " + line for line in lines[first : first + LINES_SHOWN])
 
 
+def clock_text(seconds: float) -> str:
+    """A time as hours, minutes and seconds."""
+    whole = int(seconds)
+    return f"{whole // 3600}:{whole // 60 % 60:02d}:{whole % 60:02d}"
+
+
 class Progress:
     """Progress of a run on stderr every few seconds, from bedFoam's lines of progress.
 
@@ -254,10 +260,9 @@ class Progress:
             return
         self.last = time.monotonic()
         now_s, cost = float(progress[1]), float(progress[2])
-        left = int(cost * max(self.end_s - now_s, 0))
         print(
             f"run_dem: {now_s:.3f} of {self.end_s:g} s simulated, {cost:.0f} s per simulated second, "
-            f"{left // 3600}:{left // 60 % 60:02d}:{left % 60:02d} left ({progress[3].strip()})",
+            f"{clock_text(cost * max(self.end_s - now_s, 0))} left ({progress[3].strip()})",
             file=sys.stderr,
             flush=True,
         )

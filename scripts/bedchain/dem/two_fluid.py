@@ -22,7 +22,7 @@ from bedchain.array_files import read_arrays
 from bedchain.case.schema import Case
 from bedchain.case.two_fluid import DRAG
 from bedchain.dem.gas_case import copy_last_state, last_time
-from bedchain.dem.processes import run_logged
+from bedchain.dem.processes import clock_text, run_logged
 from bedchain.dem.two_fluid_fields import Flow, read_frame
 from bedchain.errors import UserError
 from bedchain.files import atomic_folder, write_arrays, write_csv, write_text
@@ -305,10 +305,9 @@ class Progress:
             return
         self.last = now
         cost = (now - self.began) / max(self.now_s - self.start_s, 1e-9)
-        left = int(cost * max(self.end_s - self.now_s, 0))
         print(
             f"two_fluid: {self.now_s:.3f} of {self.end_s:g} s simulated, {cost:.0f} s per simulated second, "
-            f"{left // 3600}:{left // 60 % 60:02d}:{left % 60:02d} left",
+            f"{clock_text(cost * max(self.end_s - self.now_s, 0))} left",
             file=sys.stderr,
             flush=True,
         )

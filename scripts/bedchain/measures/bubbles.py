@@ -5,7 +5,7 @@ A bubble is a connected region (over sides of cells) of more than `void` voidage
 of the bed's box, and so is not the freeboard. Its diameter is that of a circle of its area.
 """
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Iterator
 
 import numpy as np
 import pandas as pd
@@ -13,6 +13,13 @@ from numpy.typing import NDArray
 from scipy import ndimage
 from scipy.spatial import cKDTree
 
+from bedchain.measures.voidage import Slab
+from bedchain.physics.bubbling_bed import MINIMUM_VOIDAGE
+from bedchain.physics.constants import GRAVITY_M_S2
+
+VOID = (1 + MINIMUM_VOIDAGE) / 2  # a bubble ends half way between minimum fluidization and no particles
+# no bubble is taken to rise faster: times sqrt(g W), the fall through the bed's width
+FASTEST = 3.0
 SMALLEST_CELLS = 4  # smaller regions are gaps between particles
 LARGEST_GROWTH = 2.0  # of a bubble's area from a frame to the next: beyond, it merged, split or is another
 LARGEST_SIDESTEP = 0.5  # of a bubble over its rise and its radius together
@@ -46,6 +53,51 @@ def voidage_map(
     column = np.clip((x_m * (columns / size_m[1])).astype(np.int64), 0, columns - 1)
     held = np.bincount(row * columns + column, minlength=rows * columns).reshape(shape)
     return np.asarray(1 - held * (solids_m * rows * columns / (size_m[0] * size_m[1])), dtype=float)
+
+
+def voidage_maps(
+    positions_m: Iterable[NDArray], size_m: tuple[float, float], cell_m: float, slab: Slab
+) -> Iterator[NDArray[np.float64]]:
+    """`voidage_map` of each frame, (rows, columns) [1].
+
+    Parameters
+    ----------
+    positions_m : iterable of (>= 2, n_particles) array
+        Rows x, z, ... of each frame [m].
+    size_m : (float, float)
+        Height and width of the bed [m].
+    cell_m : float
+        Edge of a cell [m].
+    slab : Slab
+    """
+    shape = round(size_m[0] / cell_m), round(size_m[1] / cell_m)
+    solids_m2 = np.pi / 6 * slab.diameter_m**3 / slab.thickness_m
+    return (voidage_map(frame[0], frame[1], shape, size_m, solids_m2) for frame in positions_m)
+
+
+def followed_bubbles(
+    maps: Iterable[NDArray[np.float64]], cell_m: float, interval_s: float, width_m: float
+) -> tuple[pd.DataFrame, pd.DataFrame]:
+    """Bubbles of voidage above `VOID`, and those that are seen again in the next frame.
+
+    Parameters
+    ----------
+    maps : iterable of (rows, columns) array
+        Voidage of each frame [1].
+    cell_m : float
+        Edge of a cell [m].
+    interval_s : float
+        Time between frames [s].
+    width_m : float
+        Of the bed [m].
+
+    Returns
+    -------
+    (DataFrame, DataFrame)
+        Of `bubble_table` and of `rises`.
+    """
+    table = bubble_table(maps, cell_m, VOID)
+    return table, rises(table, interval_s, FASTEST * float(np.sqrt(GRAVITY_M_S2 * width_m)))
 
 
 def bubbles_of(voidage: NDArray[np.float64], cell_m: float, void: float) -> NDArray[np.float64]:

@@ -11,20 +11,17 @@ from numpy.typing import NDArray
 
 from bedchain.case.schema import Case
 from bedchain.chains.flow_chain import Fluxes, contents_of, remaining
+from bedchain.comparison.curves import curve_table
 from bedchain.dem.two_fluid import grid_of
 from bedchain.dem.two_fluid_fields import Flow
 from bedchain.errors import UserError
 from bedchain.files import write_csv, write_text
-from bedchain.measures.bubbles import bubble_table, middle_of_bed, rises
-from bedchain.measures.mixing import GROUPS
-from bedchain.physics.bubbling_bed import MINIMUM_VOIDAGE
+from bedchain.measures.bubbles import followed_bubbles, middle_of_bed
 from bedchain.provenance import case_hash, debian_packages, git_state, machine
 
 Array = NDArray[np.float64]
-VOID = (1 + MINIMUM_VOIDAGE) / 2  # as for the bubbles of the particles
 BETWEEN_STARTS_S = 1.0  # mixing curves are means over starts
 MOST_STARTS = 4
-FASTEST = 3.0  # bubble over sqrt(g W)
 
 
 class Summary(NamedTuple):
@@ -93,7 +90,7 @@ def summarise(flow: Flow, pressure: pd.DataFrame, cpu_s_per_s: float, case: Case
         "cell_m": grid.cell_m, "gas_step_s": case["time"]["gas_step_s"], "cpu_s_per_s": cpu_s_per_s,
         "window_s": [float(flow.times_s[which][0]), float(flow.times_s[which][-1])],
         "largest_drift_1": float(pressure["solids_drift_1"].abs().max()),
-        **bubbles_at_half(1 - seen, grid.cell_m, interval, bed["width_m"], height_m),
+        **middle_of_bed(*followed_bubbles(1 - seen, grid.cell_m, interval, bed["width_m"]), height_m),
         "case": case_hash(case), "code": git_state(), "machine": machine(), "packages": debian_packages(),
     }  # fmt: skip
     return Summary(
@@ -109,15 +106,6 @@ def summarise(flow: Flow, pressure: pd.DataFrame, cpu_s_per_s: float, case: Case
 def share_of_side(cells: int, cell_m: float, line_m: float) -> Array:
     """Share of each of a row of cells that lies before a line [1]."""
     return np.clip(line_m / cell_m - np.arange(cells), 0, 1)
-
-
-def bubbles_at_half(
-    voidage: Array, cell_m: float, interval_s: float, width_m: float, height_m: float
-) -> dict[str, float]:
-    """Mean diameter [m] and rise velocity [m/s] of the bubbles around half the height of a bed."""
-    table = bubble_table(voidage, cell_m, VOID)
-    risen = rises(table, interval_s, FASTEST * np.sqrt(9.81 * width_m))
-    return middle_of_bed(table, risen, height_m)
 
 
 def mixing_table(flow: Flow, which: NDArray[np.bool_], case: Case) -> pd.DataFrame:
@@ -153,12 +141,7 @@ def mixing_table(flow: Flow, which: NDArray[np.bool_], case: Case) -> pd.DataFra
         "mean_flow": remaining(steady, lambda _: mean, length, interval, sides),
     }  # fmt: skip
     times = interval * np.arange(length + 1)
-    rows = [
-        pd.DataFrame({"time_s": times, "source": source, "direction": direction, "group": group,
-                      "fraction_remaining_1": values[:, at]})
-        for source, values in curves.items()
-        for at, (direction, group) in enumerate(GROUPS)
-    ]  # fmt: skip
+    rows = [curve_table(times, source, values) for source, values in curves.items()]
     return pd.concat(rows, ignore_index=True)
 
 

@@ -21,10 +21,9 @@ from bedchain.trajectory.frames import lag_frames
 from bedchain.trajectory.grid import Grid
 from bedchain.trajectory.realisations import Realisation
 from bedchain.trajectory.regrid import regrid
+from bedchain.uncertainty.deviations import SIDES
 
 Result = TypeVar("Result")
-RADIAL = [at for at, (direction, _) in enumerate(GROUPS) if direction == "radial"]
-AXIAL = [at for at, (direction, _) in enumerate(GROUPS) if direction == "axial"]
 ENOUGH_S = 0.2  # of processor time: shorter work is repeated
 
 
@@ -78,7 +77,7 @@ def of_chain(
     curves, spent = timed(lambda: chain.mixing(start, lines["split_x_m"], lines["split_z_m"], steps))
     density = regrid(chain.long_run_density(start), setting.grid, shown)
     values = of_density(density, shown, case)
-    values |= {"mixing_radial": curves[:, RADIAL], "mixing_axial": curves[:, AXIAL]}
+    values |= by_direction(curves)
     cost_s, cells = spent / (steps * setting.lag_s), f"{setting.grid.columns} x {setting.grid.rows} cells"
     return Answer(
         setting.name, values, cost_s, learning_s, peak_memory_mb(), setting.lag_s, True,
@@ -118,8 +117,12 @@ def curves_of(summary: Summary, source: str) -> dict[str, Array]:
     """Mixing curves of a summary as of `Answer.values`."""
     table = summary.mixing[summary.mixing["source"] == source]
     wide = table.pivot_table(index="time_s", columns="group", values="fraction_remaining_1")
-    curves = wide[[group for _, group in GROUPS]].to_numpy()
-    return {"mixing_radial": curves[:, RADIAL], "mixing_axial": curves[:, AXIAL]}
+    return by_direction(wide[[group for _, group in GROUPS]].to_numpy())
+
+
+def by_direction(curves: Array) -> dict[str, Array]:
+    """Mixing curves (n_times, 4) of `GROUPS` as of `Answer.values`."""
+    return {f"mixing_{direction}": curves[:, SIDES[direction]] for direction in ("radial", "axial")}
 
 
 def of_two_phase(case: Case, grid: Grid, window_s: float) -> Answer:

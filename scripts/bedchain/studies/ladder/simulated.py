@@ -8,16 +8,16 @@ import pandas as pd
 from numpy.typing import NDArray
 
 from bedchain.case.schema import Case
-from bedchain.measures.bubbles import bubble_table, middle_of_bed, rises, voidage_map
+from bedchain.measures.bubbles import followed_bubbles, middle_of_bed, voidage_maps
 from bedchain.measures.mixing import GROUPS
-from bedchain.physics.bubbling_bed import MINIMUM_VOIDAGE
+from bedchain.measures.voidage import Slab
 from bedchain.studies.ladder.answers import Answer, Array, Truth, Values, distance, ladder_rows, of_density
 from bedchain.trajectory.grid import Grid
 from bedchain.trajectory.realisations import Realisation
+from bedchain.uncertainty.deviations import SIDES
+from bedchain.uncertainty.noise_floor import floor_of
 
 PARTS = 4  # of learning and comparison together: their spread gives the floors of means over a window
-VOID = (1 + MINIMUM_VOIDAGE) / 2
-FASTEST = 3.0  # bubble over sqrt(g W)
 
 
 def values_of(run: Realisation, frames: slice, series: pd.DataFrame, grid: Grid, case: Case) -> Values:
@@ -31,13 +31,9 @@ def values_of(run: Realisation, frames: slice, series: pd.DataFrame, grid: Grid,
     start_s, end_s = run.times_s[frames][[0, -1]]
     within = series[series["time_s"].between(start_s, end_s)]
     values["pressure_drop"] = float(within["pressure_drop_Pa"].mean())
-    cell_m = case["gas"]["cell_size_m"]
-    shape = round(bed["height_m"] / cell_m), round(bed["width_m"] / cell_m)
-    solids = np.pi / 6 * case["particles"]["diameter_m"] ** 3 / bed["thickness_m"]
-    size = bed["height_m"], bed["width_m"]
-    maps = (voidage_map(frame[0], frame[1], shape, size, solids) for frame in positions)
-    table = bubble_table(maps, cell_m, VOID)
-    risen = rises(table, run.interval_s, FASTEST * np.sqrt(9.81 * bed["width_m"]))
+    cell_m, size = case["gas"]["cell_size_m"], (bed["height_m"], bed["width_m"])
+    maps = voidage_maps(positions, size, cell_m, Slab(bed["thickness_m"], case["particles"]["diameter_m"]))
+    table, risen = followed_bubbles(maps, cell_m, run.interval_s, bed["width_m"])
     bubbles = middle_of_bed(table, risen, 2 * float(values["particle_height"]))
     return values | {name.rsplit("_m", 1)[0]: value for name, value in bubbles.items()}
 
@@ -79,12 +75,10 @@ def truth_of(
         # a window is half of the parts: of its mean the variance is that of a part over PARTS / 2
         floors[name] = float(np.sqrt(np.sum(np.square(spread)) / (PARTS - 1) / (PARTS / 2)))
     for direction in ("radial", "axial"):
-        which = [at for at, (of, _) in enumerate(GROUPS) if of == direction]
-        mean = curves[..., which].mean(axis=0)
-        values[f"mixing_{direction}"] = mean
-        if (count := len(curves)) > 1:
-            off = (curves[..., which] - mean)[:, 1:]
-            floors[f"mixing_{direction}"] = float(np.sqrt(np.mean(off**2) * count / (count - 1)))
+        of_direction = curves[..., SIDES[direction]]
+        values[f"mixing_{direction}"] = of_direction.mean(axis=0)
+        if len(curves) > 1:
+            floors[f"mixing_{direction}"] = floor_of(of_direction[:, 1:])
     return Truth(values, floors, run.interval_s)
 
 
