@@ -9,11 +9,11 @@ import sys
 import threading
 import time
 from collections.abc import Callable, Iterator, Mapping
-from contextlib import contextmanager
+from contextlib import contextmanager, suppress
 from pathlib import Path
 
 from bedchain.errors import UserError
-from bedchain.lifetime import child_ends_with_parent
+from bedchain.lifetime import child_ends_with_parent, descendants
 
 # mpirun's ranks are its children, not ours: each gets SIGKILL as soon as mpirun has ended, however it ended
 RANK_ENDS_WITH_MPIRUN = ("setpriv", "--pdeathsig", "KILL")
@@ -170,7 +170,10 @@ def end(child: subprocess.Popen[str]) -> None:
 
 
 class Watchdog:
-    """Ends a child that has been silent for too long; time in which this process is stopped does not count.
+    """Ends a child that has been silent for too long.
+
+    Time in which this process is stopped does not count, nor time in which the child waits for a core: on a
+    crowded machine it is slow, not stuck.
 
     Parameters
     ----------
@@ -184,26 +187,40 @@ class Watchdog:
     def __init__(self, child: subprocess.Popen[str], silence_s: float | None) -> None:
         self.child = child
         self.barked = False
-        self._quiet_ticks = 0
+        self._quiet_s = 0.0
         self._over = threading.Event()
         if silence_s is not None:
             threading.Thread(target=self._watch, args=(silence_s / self.TICKS,), daemon=True).start()
 
     def heard(self) -> None:
         """Take note of a line."""
-        self._quiet_ticks = 0
+        self._quiet_s = 0.0
 
     def rest(self) -> None:
         """End the watch."""
         self._over.set()
 
     def _watch(self, tick_s: float) -> None:
+        waited_s = waiting_s(self.child.pid)
         while not self._over.wait(tick_s):
-            self._quiet_ticks += 1
-            if self._quiet_ticks >= self.TICKS:
+            before_s, waited_s = waited_s, waiting_s(self.child.pid)
+            self._quiet_s += max(tick_s - max(waited_s - before_s, 0.0), 0.0)
+            if self._quiet_s > (self.TICKS - 0.5) * tick_s:
                 self.barked = True
                 end(self.child)
                 return
+
+
+def waiting_s(process: int) -> float:
+    """Time that a process and its descendants have been ready to run without a core, of the longest [s].
+
+    It is the second number of ``/proc/<id>/schedstat`` (proc(5)); 0 where a kernel does not count it.
+    """
+    waits = [0.0]
+    for number in (process, *descendants(process)):
+        with suppress(OSError, IndexError, ValueError):
+            waits.append(float(Path(f"/proc/{number}/schedstat").read_text().split()[1]) / 1e9)
+    return max(waits)
 
 
 def last_lines(log: Path) -> str:

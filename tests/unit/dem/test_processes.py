@@ -73,6 +73,21 @@ def test_a_program_that_goes_on_speaking_is_left_alone(tmp_path):
     assert (tmp_path / "log").read_text().split() == ["1", "2", "3", "4"]
 
 
+def test_time_spent_waiting_for_a_core_is_no_silence(tmp_path):
+    """Four children on one core: each works for 0.6 s, which takes 2.4 s by the clock."""
+    core = str(min(os.sched_getaffinity(0)))
+    busy = "import time\nwhile time.process_time() < 0.6: pass"
+    command = ["taskset", "-c", core, sys.executable, "-c", busy]
+    rivals = [subprocess.Popen(command) for _ in range(3)]
+    try:
+        began = time.monotonic()
+        run_logged(command, tmp_path / "log", silence_s=1.5)
+        assert time.monotonic() - began > 1.6, "the child did not wait: nothing was tested"
+    finally:
+        for rival in rivals:
+            rival.wait()
+
+
 def test_the_silence_allowed_grows_with_the_work_between_two_lines():
     assert longest_silence(100) == SILENCE_S
     assert longest_silence(81_000 * 5000) == pytest.approx(2025)
