@@ -24,8 +24,8 @@ FOLDER = Path("results/verify")
 def printed(table: pd.DataFrame) -> str:
     """The table for people: one line a row, without the sources."""
     shown = table.drop(columns="source")
-    digits = dict.fromkeys(("value", "reference", "tolerance"), "{:.5g}".format)
-    return shown.to_string(index=False, formatters=digits, justify="left")
+    digits = dict.fromkeys(("value", "error", "reference", "tolerance"), "{:.5g}".format)
+    return shown.to_string(index=False, formatters=digits, justify="left", na_rep="")
 
 
 def main() -> int:

@@ -66,6 +66,36 @@ def means_left_out(series: NDArray[np.floating]) -> Array:
     return np.tensordot(weights / weights.sum(axis=1, keepdims=True), values, axes=1)
 
 
+def block_error(left_out: NDArray[np.floating]) -> Array:
+    """Standard error of what is estimated without each block in turn: ``se`` of this module.
+
+    Parameters
+    ----------
+    left_out : (BLOCKS, ...) array
+
+    Returns
+    -------
+    (...) array
+    """
+    spread = np.asarray(left_out, float) - np.mean(left_out, axis=0)
+    return np.asarray(np.sqrt((BLOCKS - 1) / BLOCKS * (spread**2).sum(axis=0)))
+
+
+def mean_error(series: NDArray[np.floating]) -> Array:
+    """Standard error of a mean over time, particles or places, from blocks of neighbours.
+
+    Parameters
+    ----------
+    series : (n, ...) array
+        Neighbours in time or space beside each other, at least `BLOCKS`.
+
+    Returns
+    -------
+    (...) array
+    """
+    return block_error(means_left_out(series))
+
+
 def block_band(
     value: NDArray[np.floating] | float,
     left_out: NDArray[np.floating],
@@ -106,8 +136,7 @@ def block_band(
 
 
 def _ends(value: Array, left_out: Array) -> tuple[Array, Array]:
-    spread = left_out - left_out.mean(axis=0)
-    half = STUDENT * np.sqrt((BLOCKS - 1) / BLOCKS * (spread**2).sum(axis=0))
+    half = STUDENT * block_error(left_out)
     return value - half, value + half
 
 

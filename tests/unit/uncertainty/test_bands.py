@@ -25,6 +25,12 @@ def test_the_band_of_a_mean_is_students():
     assert pytest.approx(2.776445) == STUDENT
 
 
+def test_the_error_of_a_mean_is_that_of_its_blocks():
+    series = np.random.default_rng(1).normal(3, [1, 4], (50, 2))
+    means = series.reshape(BLOCKS, -1, 2).mean(axis=1)
+    assert bands.mean_error(series) == pytest.approx(means.std(axis=0, ddof=1) / np.sqrt(BLOCKS))
+
+
 def test_bands_stay_on_their_scale():
     left_out = np.linspace(0.1, 3, BLOCKS)[:, None] * np.array([1.0, 2.0])
     low, high = block_band(np.array([1.0, 2.0]), left_out, "positive")

@@ -115,11 +115,12 @@ def validation(results: Path) -> pd.DataFrame:
 
 
 def verification(results: Path) -> pd.DataFrame:
-    """The solvers against theory."""
+    """The solvers against theory; the error is that of the value's own average, where it is one."""
     table = pd.read_csv(results / "verification.csv")
     kept = table[["quantity"]].copy()
-    for name in ("value", "reference", "tolerance"):
-        kept[name] = table[name].map("{:.4g}".format)
+    digits = {"value": 4, "error": 2, "reference": 4, "tolerance": 4}
+    for name, count in digits.items():
+        kept[name] = [f"{value:.{count}g}" if np.isfinite(value) else "" for value in table[name]]
     return kept.assign(passed=table["pass"], source_of_reference=table["source"]).rename(
         columns={"source_of_reference": "reference from"}
     )

@@ -19,6 +19,7 @@ from bedchain.studies.verification.laws import (
 from bedchain.studies.verification.plots import Curve, draw
 from bedchain.studies.verification.rows import Row
 from bedchain.studies.verification.settled_bed import random_bed, settled
+from bedchain.uncertainty.bands import block_error, kept_blocks, kept_steps, mean_error
 
 NEAR = 0.10
 NEAR_WEIGHT = 0.02
@@ -30,8 +31,10 @@ SOURCE = "Ergun 1952 with the bed's own bulk voidage {:.3f}: pressure drop = wei
 UP, DOWN = (0.0, RAMP), (RAMP + HOLD, 2 * RAMP + HOLD)
 
 
-def fitted_onset(table: pd.DataFrame, span: tuple[float, float], weight: float, guess: float) -> float:
-    """Velocity at which the curve of the packed bed, a U + b U^2, reaches the weight per area [m/s].
+def fitted_onset(
+    table: pd.DataFrame, span: tuple[float, float], weight: float, guess: float
+) -> tuple[float, float]:
+    """Velocity at which the curve of the packed bed, a U + b U^2, reaches the weight per area, and its error.
 
     Parameters
     ----------
@@ -43,13 +46,24 @@ def fitted_onset(table: pd.DataFrame, span: tuple[float, float], weight: float, 
         Weight per area [Pa].
     guess : float
         Rough minimum fluidization velocity [m/s], to find the packed part of the curve.
+
+    Returns
+    -------
+    onset, error : float
+        [m/s]; blocks that are neighbours on the curve make the error up to twice that of the scatter alone.
     """
     speed, drop = table["inlet_velocity_m_s"].to_numpy(), table["pressure_drop_Pa"].to_numpy()
     part = table["time_s"].between(*span).to_numpy()
     part = part & (speed > PACKED[0] * guess) & (speed < PACKED[1] * guess)
-    powers = np.column_stack([speed[part], speed[part] ** 2])
-    linear, square = np.linalg.lstsq(powers, drop[part], rcond=None)[0]
-    return float(2 * weight / (linear + np.sqrt(linear**2 + 4 * square * weight)))
+    speed, drop = speed[part], drop[part]
+
+    def onset(weights: np.ndarray) -> float:
+        rows = weights[:, None] * np.column_stack([speed, speed**2])
+        linear, square = np.linalg.lstsq(rows, weights * drop, rcond=None)[0]
+        return float(2 * weight / (linear + np.sqrt(linear**2 + 4 * square * weight)))
+
+    left_out = np.array([onset(kept_steps(kept, len(speed))) for kept in kept_blocks()])
+    return onset(np.ones(len(speed))), float(block_error(left_out))
 
 
 def ramped_bed(work: Path, solver: Path) -> tuple[Setup, pd.DataFrame]:
@@ -102,9 +116,12 @@ def plateau(table: pd.DataFrame, weight: float) -> Row:
     inertia = (rising[-1] - rising[0]) / (GRAVITY * (times[-1] - times[0]))
     walls = (held["weight_on_floor_1"] + held["weight_on_sides_1"]).mean()
     carried = held["pressure_drop_Pa"].mean() / weight + walls - inertia
+    # at each moment, and not from end to end
+    balance = held["pressure_drop_Pa"] / weight + held["weight_on_floor_1"] + held["weight_on_sides_1"]
+    error = float(mean_error(balance.to_numpy() - np.gradient(rising, times) / GRAVITY))
     quantity = "pressure drop on the plateau, walls and inertia put right, over the weight per area [1]"
     source = f"weight {weight:.1f} Pa, of it floor and sides {walls:.3f}, inertia {inertia:.3f}"
-    return Row(quantity, carried, 1, NEAR_WEIGHT, source)
+    return Row(quantity, carried, 1, NEAR_WEIGHT, source, error)
 
 
 def check(work: Path, solver: Path, figures: Path) -> list[Row]:
@@ -116,9 +133,9 @@ def check(work: Path, solver: Path, figures: Path) -> list[Row]:
     for name, span, at_rest in (("up", UP, 0), ("down", DOWN, -1)):
         voidage = voidage_under_gas(frames, at_rest, table, of)
         reference = minimum_fluidization(of, voidage)
-        onset = fitted_onset(table, span, weight, reference)
+        onset, error = fitted_onset(table, span, weight, reference)
         quantity = f"minimum fluidization velocity, gas {name} [m/s]"
-        rows.append(Row(quantity, onset, reference, NEAR, SOURCE.format(voidage)))
+        rows.append(Row(quantity, onset, reference, NEAR, SOURCE.format(voidage), error))
         curves.append(curve_of(f"gas {name}", table, span, of, voidage))
     rows.append(plateau(table, weight))
     draw(figures / "fluidization", curves, "superficial velocity [m/s]", "pressure drop [Pa]")

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Rows of the verification table: a value, its reference and the tolerance."""
+"""Rows of the verification table: a value, its reference, the tolerance and the value's own error."""
 
 import math
 from dataclasses import dataclass
@@ -23,6 +23,10 @@ class Row:
         Largest difference allowed: relative to the reference, absolute where the reference is 0.
     source : str
         Paper, equation or law behind the reference.
+    error : float
+        Standard error of a value that is an average over time, particles or places, or a fit to a series
+        (`uncertainty.bands.block_error`), in the value's unit. NaN where nothing is averaged: one particle,
+        a lattice in a steady gas, a count or an extreme.
     """
 
     quantity: str
@@ -30,6 +34,7 @@ class Row:
     reference: float
     tolerance: float
     source: str
+    error: float = math.nan
 
     @property
     def passed(self) -> bool:
@@ -39,12 +44,13 @@ class Row:
 
 
 def table_of(rows: list[Row]) -> pd.DataFrame:
-    """The table: quantity, value, reference, tolerance, pass (yes or no), source."""
+    """Columns: quantity, value, reference, error (NaN where nothing is averaged), tolerance, pass, source."""
     return pd.DataFrame(
         {
             "quantity": [row.quantity for row in rows],
             "value": [row.value for row in rows],
             "reference": [row.reference for row in rows],
+            "error": [row.error for row in rows],
             "tolerance": [row.tolerance for row in rows],
             "pass": ["yes" if row.passed else "no" for row in rows],
             "source": [row.source for row in rows],

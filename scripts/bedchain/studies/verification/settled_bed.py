@@ -12,6 +12,7 @@ from bedchain.dem.small_cases import Setup, run_gas, run_particles
 from bedchain.studies.verification.laws import Suspension, ergun_gradient, suspension
 from bedchain.studies.verification.plots import Curve, draw
 from bedchain.studies.verification.rows import Row
+from bedchain.uncertainty.bands import mean_error
 
 NEAR = 0.05
 NEAR_INSIDE = 0.02
@@ -32,8 +33,8 @@ class Flow(NamedTuple):
     ----------
     drop : float
         Pressure drop from the inlet to the outlet [Pa].
-    pressure : (n_rows,) ndarray
-        Mean in each row of cells [Pa].
+    pressure : (n_rows, n_columns) ndarray
+        In each cell, by rows [Pa].
     carried : (n_rows,) ndarray
         Voidage times rising velocity, mean in each row, over the superficial velocity [1].
     """
@@ -71,7 +72,7 @@ def flow_through(bed: Setup, solver: Path, velocity: float) -> Flow:
     """Run the gas at one velocity until it is steady."""
     table = run_gas(bed, solver, HELD, f"constant {velocity}")
     gas = bed.folder / "gas"
-    pressure = suspension(bed).gas_density * rows_of(gas, "p").mean(axis=1)
+    pressure = suspension(bed).gas_density * rows_of(gas, "p")
     rising = (rows_of(gas, "voidage") * rows_of(gas, "U")[..., 2]).mean(axis=1)
     return Flow(float(table["pressure_drop_Pa"].iloc[-1]), pressure, rising / velocity)
 
@@ -94,12 +95,20 @@ def check(work: Path, solver: Path, figures: Path) -> list[Row]:
     for velocity in VELOCITIES:
         flow, of = flow_through(bed, solver, velocity), suspension(bed)
         whole, part = (expected_drop(of, z, planes, velocity) for planes in (edges, centres))
-        drop = flow.pressure[inside[0]] - flow.pressure[inside[-1]]
+        between = flow.pressure[inside[0]] - flow.pressure[inside[-1]]
+        of_whole, of_part = (float(mean_error(columns)) for columns in (flow.pressure[0], between))
         off = float(np.abs(flow.carried - 1).max())
         name = f"settled bed at {velocity:g} m/s"
         rows += [
-            Row(f"{name}: pressure drop [Pa]", flow.drop, whole, NEAR, SOURCE),
-            Row(f"{name}: pressure drop between rows inside [Pa]", drop, part, NEAR_INSIDE, SOURCE),
+            Row(f"{name}: pressure drop [Pa]", flow.drop, whole, NEAR, SOURCE, of_whole),
+            Row(
+                f"{name}: pressure drop between rows inside [Pa]",
+                float(between.mean()),
+                part,
+                NEAR_INSIDE,
+                SOURCE,
+                of_part,
+            ),
             Row(
                 f"{name}: largest gap of a row's flow from that given [1]", off, 0, NEAR_FLOW, "div(e U) = 0"
             ),

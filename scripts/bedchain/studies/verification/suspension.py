@@ -17,6 +17,7 @@ from bedchain.dem.small_cases import Setup, run_gas
 from bedchain.studies.verification.laws import LAWS, Suspension, drag_coefficient, suspension
 from bedchain.studies.verification.plots import Curve, draw
 from bedchain.studies.verification.rows import Row
+from bedchain.uncertainty.bands import mean_error
 
 NEAR = 0.01
 LAW = "beetstra"
@@ -44,7 +45,7 @@ def sinking_speed(of: Suspension, e: float, times: np.ndarray) -> np.ndarray:
 
 
 def run_suspension(folder: Path, solver: Path) -> tuple[np.ndarray, ...]:
-    """Times [s] of the frames, speed of the middle of the box and that of the theory [m/s]."""
+    """Times [s] of the frames, speed of each sphere in the middle of the box and that of the theory [m/s]."""
     sections: dict[str, dict[str, Any]] = {
         "bed": {"width_m": WIDTH, "height_m": HEIGHT},
         "particles": {"number": 1, "diameter_m": DIAMETER},
@@ -58,18 +59,19 @@ def run_suspension(folder: Path, solver: Path) -> tuple[np.ndarray, ...]:
     low, high = (share * HEIGHT for share in MIDDLE)
     of_middle = (frames[-1, :, 2] > low) & (frames[-1, :, 2] < high)
     times = FRAME * np.arange(len(frames))
-    speed = -frames[:, of_middle, 4].mean(axis=1)
+    speed = -frames[:, of_middle, 4]
     voidage = 1 - np.pi / 6 * DIAMETER**2 / SPACING**2
     return times, speed, sinking_speed(suspension(setup), voidage, times)
 
 
 def check(work: Path, solver: Path, figures: Path) -> list[Row]:
     """Rows and figure of the sinking suspension."""
-    times, speed, theory = run_suspension(work / "suspension", solver)
+    times, of_middle, theory = run_suspension(work / "suspension", solver)
+    speed, error = of_middle.mean(axis=1), float(mean_error(of_middle[-1]))
     gap = float(np.abs(speed - theory).max() / theory[-1])
     curve = Curve("middle of the box", times, speed, theory)
     draw(figures / "suspension", [curve], "time [s]", "sinking speed of a suspension [m/s]")
     return [
-        Row("sinking speed of a uniform suspension [m/s]", speed[-1], theory[-1], NEAR, SOURCE),
+        Row("sinking speed of a uniform suspension [m/s]", speed[-1], theory[-1], NEAR, SOURCE, error),
         Row("largest gap on the way there over it, suspension [1]", gap, 0, NEAR, SOURCE),
     ]

@@ -42,15 +42,15 @@ def fluidizing_speed(of: Suspension, z: np.ndarray, thickness: float) -> float:
     return float(brentq(surplus, 1e-3, 10))
 
 
-def onset(bed: Setup, solver: Path, of: Suspension, thickness: float) -> tuple[float, float]:
-    """Minimum fluidization velocity in a slab of a thickness [m]: measured, and by Ergun [m/s]."""
+def onset(bed: Setup, solver: Path, of: Suspension, thickness: float) -> tuple[float, float, float]:
+    """Minimum fluidization velocity in a slab of a thickness [m]: measured, its error, and by Ergun [m/s]."""
     slab = {"thickness": thickness, "slab_low": -thickness / 2, "slab_high": thickness / 2}
     name = f"slab_{thickness / DIAMETER:.3f}"
     setup = Setup(bed.folder.with_name(name), bed.sections, bed.particles, bed.numbers | slab)
     reference = fluidizing_speed(of, bed.particles[:, 1], thickness)
     table = run_gas(setup, solver, RAMP, f"table ((0 0) ({RAMP} {REACHED * reference}))")
     weight = NUMBER * of.weight / (WIDTH * thickness)
-    return fitted_onset(table, (0, RAMP), weight, reference), reference
+    return *fitted_onset(table, (0, RAMP), weight, reference), reference
 
 
 def check(work: Path, solver: Path, figures: Path) -> list[Row]:
@@ -64,9 +64,10 @@ def check(work: Path, solver: Path, figures: Path) -> list[Row]:
     rows = []
     thicknesses = [LAYER_DISTANCE, converted, 1.0, 1.25]
     for thickness in thicknesses:
-        measured, reference = onset(bed, solver, of, thickness * DIAMETER)
+        measured, error, reference = onset(bed, solver, of, thickness * DIAMETER)
         quantity = f"u_mf in a slab of {thickness:.3g} diameters{names.get(thickness, '')} [m/s]"
-        rows.append(Row(quantity, measured, reference, NEAR, SOURCE.format(1 - solids / thickness)))
+        source = SOURCE.format(1 - solids / thickness)
+        rows.append(Row(quantity, measured, reference, NEAR, source, error))
     values, theory = (np.array([getattr(row, name) for row in rows]) for name in ("value", "reference"))
     draw(
         figures / "slab_thickness", [Curve("settled bed, held", np.array(thicknesses), values, theory)],

@@ -102,17 +102,20 @@ def test_validation_verification_peers_and_benchmark(tmp_path: Path) -> None:
     table = study_tables.validation(tmp_path)
     assert list(table.iloc[0]) == ["voidage rms", "dem", "1", "0.0681", "0.05 to 0.09", "0.05", "no"]
     assert list(table.iloc[1])[3:] == ["0.0154", "", "", ""]
-    pd.DataFrame([["u [m/s]", 0.77, 0.75, 0.1, "yes", "Ergun"]],
-                 columns=["quantity", "value", "reference", "tolerance", "pass", "source"]).to_csv(
+    pd.DataFrame([["u [m/s]", 0.77, 0.0123, 0.75, 0.1, "yes", "Ergun"],
+                  ["lost [1]", 0, np.nan, 0, 0, "yes", "count"]],
+                 columns=["quantity", "value", "error", "reference", "tolerance", "pass", "source"]).to_csv(
         tmp_path / "verification.csv", index=False)  # fmt: skip
     assert list(study_tables.verification(tmp_path).iloc[0]) == [
         "u [m/s]",
         "0.77",
+        "0.012",
         "0.75",
         "0.1",
         "yes",
         "Ergun",
     ]
+    assert study_tables.verification(tmp_path)["error"][1] == ""
     peer = {"bed": "paper", "code": "Yade", "wall_s_per_simulated_s": 3195.2,
             "fastest_s_per_simulated_s": 2981.0,
             "slowest_s_per_simulated_s": 3272.0, "relative_to_bedfoam_1": 5.54,

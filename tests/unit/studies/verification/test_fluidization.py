@@ -25,11 +25,24 @@ def test_the_onset_of_ergun_s_own_curve_is_his():
     onset = minimum_fluidization(OF, E)
     # a guess that is off by a tenth finds it too
     for guess in (onset, 0.9 * onset, 1.1 * onset):
-        assert fluidization.fitted_onset(ramp(), fluidization.UP, WEIGHT, guess) == pytest.approx(
-            onset, rel=1e-6
-        )
+        fitted, error = fluidization.fitted_onset(ramp(), fluidization.UP, WEIGHT, guess)
+        assert fitted == pytest.approx(onset, rel=1e-6) and error < 1e-6 * onset
     looser = ramp().assign(pressure_drop_Pa=lambda table: 0.9 * table["pressure_drop_Pa"])
-    assert fluidization.fitted_onset(looser, fluidization.UP, WEIGHT, onset) > 1.03 * onset
+    assert fluidization.fitted_onset(looser, fluidization.UP, WEIGHT, onset)[0] > 1.03 * onset
+
+
+def test_the_error_of_a_fitted_onset_is_at_most_twice_the_scatter_of_many():
+    onset, rng = minimum_fluidization(OF, E), np.random.default_rng(3)
+    clean = ramp()
+    noise = 0.02 * WEIGHT * rng.normal(size=(200, len(clean)))
+    fits = [
+        fluidization.fitted_onset(
+            clean.assign(pressure_drop_Pa=clean["pressure_drop_Pa"] + each), fluidization.UP, WEIGHT, onset
+        )
+        for each in noise
+    ]
+    values, errors = np.array(fits).T
+    assert 1 < np.sqrt((errors**2).mean()) / values.std() < 2
 
 
 def test_the_theory_of_a_ramp_is_ergun_up_to_the_weight():
@@ -49,9 +62,10 @@ def test_the_plateau_allows_for_walls_and_for_a_bed_that_slows_down():
         {
             "time_s": times, "mean_height_m": 0.03 + 0.2 * late - 0.25 * late**2,
             "weight_on_floor_1": 0.02, "weight_on_sides_1": 0.01,
-            "pressure_drop_Pa": WEIGHT * (1 - 0.03 - 0.5 / 9.81),
+            "pressure_drop_Pa": WEIGHT * (1 - 0.03 - 0.5 / 9.81 + 0.01 * np.sin(200 * late)),
         }
     )  # fmt: skip
     row = fluidization.plateau(table, WEIGHT)
     assert row.value == pytest.approx(1.0, abs=3e-3) and row.passed
+    assert 1e-4 < row.error < 0.01
     assert not fluidization.plateau(table.assign(weight_on_floor_1=0.06), WEIGHT).passed

@@ -25,3 +25,9 @@ def test_tolerance_is_relative_or_absolute_at_zero(value, reference, tolerance, 
     row = Row("something [1]", value, reference, tolerance, "made up")
     assert row.passed is passes
     assert table_of([row])["pass"].tolist() == ["yes" if passes else "no"]
+
+
+def test_only_an_average_has_an_error():
+    rows = [Row("mean [1]", 1.0, 1.0, 0.1, "made up", error=0.02), Row("count [1]", 1.0, 1.0, 0.1, "made up")]
+    error = table_of(rows)["error"]
+    assert error[0] == 0.02 and math.isnan(error[1])
