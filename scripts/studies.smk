@@ -5,6 +5,7 @@
 #   estimate  what a case will cost, before it runs      stability solvers and chains at their extremes
 #   tradeoff  what accuracy costs, of chains and of simulated beds; the presets
 #   bands     how often the 95 % bands hold the truth
+#   presets   cost and error of the case's chains and of the presets
 #   ladder    every model on one bed, cost against error
 import shlex
 
@@ -198,6 +199,37 @@ rule score_models:
         comparison=pick(CASE, "comparison.start_s", "comparison.end_s"),
     script:
         "score_models.py"
+
+
+# The case's own chains and the presets, from several starts beside another DEM run: snakemake --cores 2 presets
+rule presets:
+    input:
+        f"{RESULTS}/preset_errors.csv",
+
+
+# Alone on the machine, since it measures times.
+rule score_presets:
+    input:
+        code("score_presets"),
+        **TRAJECTORY,
+        # an archive keeps the repeats' curves, not their positions
+        repeats=expand(f"{BED}/repeats/{{repeat}}/trajectory.npy", repeat=[] if REFERENCE else REPEATS),
+        curves=expand(rules.measure_mixing.output.mixing, repeat=REPEATS),
+        choice=CHOICE,
+        presets="cases/presets.yaml",
+    output:
+        table=f"{RESULTS}/preset_errors.csv",
+    log:
+        f"{LOGS}/score_presets.log",
+    benchmark:
+        f"{BENCHMARKS}/score_presets.tsv"
+    conda:
+        "../envs/python.yaml"
+    threads: workflow.cores or 1
+    params:
+        case=CASE,
+    script:
+        "score_presets.py"
 
 
 # Every model on one bed, cost against error: snakemake --cores 2 ladder. Two-fluid runs come out of the case's archive

@@ -34,7 +34,7 @@ OF_CASE: dict[str, tuple[tuple[str, ...], Builder]] = {
     "agreement": (("agreement.csv",), case_tables.agreement),
     "steadiness": (("stationarity.csv",), case_tables.steadiness),
     "cells_and_lags": (("discussion.csv",), case_tables.cells_and_lags),
-    "presets": (("tradeoff.csv", "presets.yaml"), study_tables.presets),
+    "preset_errors": (("preset_errors.csv",), study_tables.preset_errors),
     "tradeoff_mixing": (("tradeoff.csv",), study_tables.mixing_by_cell_and_lag),
     "tradeoff_density": (("tradeoff.csv",), study_tables.density_by_cell_and_lag),
     "learning_windows": (("tradeoff.csv",), study_tables.learning_windows),

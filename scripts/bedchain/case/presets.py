@@ -23,6 +23,7 @@ MADE_BY = "snakemake tradeoff measures presets and writes results/<case>/presets
 SETTINGS = ("cell_m", "lag_s", "model")
 MEASURED = ("cost_s", "error_floors")
 OTHERS = ("density_floors", "measured_on")
+FEWEST_CELLS = 4  # along each side of a bed: of fewer, half a bed is a single cell
 LEVEL_DIAMETERS = 0.5  # an archive keeps positions to half a diameter: cells of whole levels are exact
 
 
@@ -108,8 +109,9 @@ def preset_named(name: str, file: Path = PRESETS) -> Preset:
 def with_preset(case: Case, preset: Preset, file: Path = PRESETS) -> Case:
     """A case whose chains are those of a preset.
 
-    Cells are as near to the preset's as divisors of the bed allow that keep a line between groups on a border
-    of cells where the case has it on one; the lag is the nearest multiple of the frame interval.
+    Cells are as near to the preset's, or to a quarter of a small bed's shorter side, as divisors of the bed
+    allow that keep a line between groups on a border of cells where the case has it on one; the lag is the
+    nearest multiple of the frame interval.
 
     Parameters
     ----------
@@ -135,8 +137,9 @@ def with_preset(case: Case, preset: Preset, file: Path = PRESETS) -> Case:
     columns: int | str = AUTO
     rows: int | str = AUTO
     if not isinstance(preset.cell_m, str):
-        columns = count_near(bed["width_m"], preset.cell_m, lines["split_x_m"], own[0], diameter)
-        rows = count_near(bed["height_m"], preset.cell_m, lines["split_z_m"], own[1], diameter)
+        cell_m = min(preset.cell_m, bed["width_m"] / FEWEST_CELLS, bed["height_m"] / FEWEST_CELLS)
+        columns = count_near(bed["width_m"], cell_m, lines["split_x_m"], own[0], diameter)
+        rows = count_near(bed["height_m"], cell_m, lines["split_z_m"], own[1], diameter)
     changed = case | {
         "cells": cells | {"columns": columns, "rows": rows},
         "chain": case["chain"] | {"lag_s": lag_s, "models": [preset.model]},

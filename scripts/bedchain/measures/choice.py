@@ -15,7 +15,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 from numpy.typing import NDArray
 
-from bedchain.case.presets import LEVEL_DIAMETERS
+from bedchain.case.presets import FEWEST_CELLS, LEVEL_DIAMETERS
 from bedchain.errors import DataError
 from bedchain.measures.dispersion_by_lag import DispersionByLag, thinned
 from bedchain.measures.numerical_dispersion import added_share
@@ -31,7 +31,6 @@ MOST_ADDED = 0.05  # of the particles' dispersion, by the cells
 FEWEST_PARTICLES = 10  # of fewer a variance is known to no digit
 FEWEST_CORRELATIONS = 3  # correlation times in a window: of fewer no maximum can be told from a fluctuation
 LONGEST = 0.2  # of the window: the lag where the dispersion has no maximum, and the longest it is raised to
-FEWEST_CELLS = 4  # along each side of the bed
 MOST_ELONGATED = 1.25  # longer over shorter side of a cell
 GIVE = "give chain.lag_s and cells, or a longer learning window"
 

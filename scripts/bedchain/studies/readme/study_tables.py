@@ -5,10 +5,10 @@ Each function takes the folder of the results and gives texts as they are shown.
 """
 
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import pandas as pd
-import yaml
 
 from bedchain.studies.readme.case_tables import by_cell_and_lag, number
 
@@ -17,31 +17,37 @@ CELLS_AND_LAGS, WINDOWS = "cells and lag", ("window", "window start")
 CHAIN = ["model", "cell_m", "lag_s", "options"]
 
 
-def presets(results: Path) -> pd.DataFrame:
-    """The presets that the trade-off study takes, and the case's own chain."""
-    table = _chains(results)
-    picked = table[table["preset"].notna()].copy()
-    rows = [row | {"name": name} for row in picked.to_dict("records") for name in row["preset"].split()]
-    order = list(yaml.safe_load((results / "presets.yaml").read_text(encoding="utf-8")))
-    rows.sort(key=lambda row: order.index(row["name"]))
-    own = table[table["tracers"] > 0].iloc[:1]
-    keys = ["model", "estimator", "cell_width_m", "cell_height_m", "lag_s"]
-    same = table.merge(own[keys], on=keys)
-    rows += [row | {"name": "the case's own"} for row in same[same["tracers"] == 0].to_dict("records")[:1]]
-    return pd.DataFrame(
-        {
-            "preset": row["name"],
-            "chain": f"{row['model']}, {_cell(row)}, {row['lag_s']:g} s",
-            "cost": f"{number(1e3 * row['cost_s'])} ms",
-            "validation error": number(row["validation_error_1"]),
-            "its 95 % interval": " to ".join(
-                number(row[f"validation_ci_{end}_1"]) for end in ("low", "high")
-            ),
-            "mixing curves, noise floors": number(row["mixing_floors_1"]),
-            "density, noise floors": number(row["density_floors_1"]),
-        }
-        for row in rows
-    )
+def preset_errors(results: Path) -> pd.DataFrame:
+    """Cost and errors of the case's own chains and of the presets, beside another DEM run."""
+    table = pd.read_csv(results / "preset_errors.csv")
+    another = table.iloc[0]
+    rows = []
+    for row in table.to_dict("records"):
+        chain = f"{row['model']}, {100 * row['cell_m']:.2g} cm, {row['lag_s']:g} s"
+        band = f"{number(row['ci_low_1'])} to {number(row['ci_high_1'])}"
+        rows.append(
+            {
+                "chain": row["chain"],
+                "model, cells, lag": chain if pd.notna(row["model"]) else "",
+                "cost": f"{number(row['cost_s'])} s" if pd.notna(row["cost_s"]) else "",
+                "error over the spread of starts": number(row["over_spread_1"]),
+                "95 % band": band if pd.notna(row["ci_low_1"]) else "",
+                "Fig. 5's start, noise floors": number(row["over_floor_1"]),
+                "no worse than another run": _no_worse(row, another),
+            }
+        )
+    return pd.DataFrame(rows)
+
+
+def _no_worse(row: dict[str, Any], another: "pd.Series[Any]") -> str:
+    """Whether a chain errs no more than another run, over all starts and from one; or its problem."""
+    if pd.isna(row["model"]):
+        return "" if pd.isna(row["problem"]) else str(row["problem"])
+    if np.isnan(row["over_spread_1"]):
+        return "one start: not known"
+    if not row["over_spread_1"] <= another["over_spread_1"]:
+        return "no"
+    return "yes" if not row["over_floor_1"] > another["over_floor_1"] else "not from the single start"
 
 
 def mixing_by_cell_and_lag(results: Path) -> pd.DataFrame:

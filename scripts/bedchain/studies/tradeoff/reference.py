@@ -44,7 +44,7 @@ def own_grid(run: Realisation, case: Case) -> Grid:
     """The case's cells on the bed of a run."""
     cells = case["cells"]
     if reason := not_flat(cells.get("form", "boxes"), cells.get("layers", 1), case.get("outside", "refuse")):
-        raise DataError(f"{reason}: take a case of its own for the trade-off")
+        raise DataError(f"{reason}: take a case of its own for this study")
     return Grid(run.width_m, run.height_m, cells["columns"], cells["rows"])
 
 

@@ -33,15 +33,30 @@ def write_tradeoff(folder: Path) -> None:
         chain(half="dem", axis="drag"),
     ]
     pd.DataFrame(rows).to_csv(folder / "tradeoff.csv", index=False)
-    (folder / "presets.yaml").write_text("fast: {}\nbalanced: {}\naccurate: {}\n")
 
 
-def test_presets_end_with_the_case_s_own_chain(tmp_path: Path) -> None:
-    write_tradeoff(tmp_path)
-    table = study_tables.presets(tmp_path)
-    assert list(table["preset"]) == ["fast", "balanced", "accurate", "the case's own"]
-    assert list(table["chain"])[::3] == ["static, 3 cm, 0.25 s", "static, 1 cm, 0.025 s"]
-    assert list(table["mixing curves, noise floors"]) == ["1.5", "1.4", "1.4", "2"]
+def test_presets_are_held_against_what_another_run_has(tmp_path: Path) -> None:
+    about = {
+        "model": "static",
+        "cell_m": 0.01,
+        "lag_s": 0.2,
+        "cost_s": 0.1,
+        "ci_low_1": 1.0,
+        "ci_high_1": 1.3,
+    }
+    rows = [
+        {"chain": "another DEM run", "over_spread_1": 1.414, "over_floor_1": 1.48},
+        about | {"chain": "balanced", "over_spread_1": 1.1, "over_floor_1": 1.4},
+        about | {"chain": "static", "over_spread_1": 1.1, "over_floor_1": 1.6},
+        about | {"chain": "fast", "over_spread_1": 1.7, "over_floor_1": np.nan, "ci_low_1": np.nan},
+        {"chain": "too fine", "problem": "no such cells"},
+    ]
+    pd.DataFrame(rows).to_csv(tmp_path / "preset_errors.csv", index=False)
+    table = study_tables.preset_errors(tmp_path)
+    verdicts = ["", "yes", "not from the single start", "no", "no such cells"]
+    assert list(table["no worse than another run"]) == verdicts
+    assert table["model, cells, lag"][1] == "static, 1 cm, 0.2 s" and table["cost"][1] == "0.1 s"
+    assert list(table["95 % band"]) == ["", "1 to 1.3", "1 to 1.3", "", ""]
 
 
 def test_windows_and_maps_hold_their_own_rows_only(tmp_path: Path) -> None:
