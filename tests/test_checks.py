@@ -15,7 +15,7 @@ COMMANDS = (
     *("ruff", "mypy", "lint-imports", "snakefmt", "snakemake", "shellcheck", "clang-format"),
     "pytest",
 )
-CHECKS = 13
+CHECKS = 16
 SECONDS = 60  # of a busy machine; on an idle one it takes two
 STAND_IN = """#!/bin/sh
 echo "this is $(basename "$0") $*"
@@ -46,7 +46,7 @@ def checks(tmp_path):
 
 def table_of(output):
     """Outcome of each check, by the summary."""
-    lines = output.split("== summary\n")[-1].splitlines()
+    lines = output.split("== summary: ")[-1].splitlines()
     return {words[0]: words[1] for line in lines if len(words := line.split()) == 4 and words[3] == "s"}
 
 
@@ -55,14 +55,18 @@ def test_all_checks_pass_and_each_is_shown(checks):
     outcome = subprocess.run(["sh", "test"], cwd=folder, capture_output=True, text=True, timeout=SECONDS)
     table = table_of(outcome.stdout)
     assert outcome.returncode == 0 and {*table.values()} == {"ok"}
-    assert len(table) == CHECKS and {"unit", "solver_1", "solver_2", "end_to_end", "results"} < {*table}
-    assert outcome.stdout.count("this is pytest") == 4
-    assert "12 passed, 0 failed" in outcome.stdout
+    assert len(table) == CHECKS and {"set_up", "build", "solver", "unit", "end_to_end", "results"} < {*table}
+    assert outcome.stdout.count("this is pytest") == 5
+    assert "15 passed, 0 failed" in outcome.stdout
 
 
 @pytest.mark.parametrize(
     ("special", "check"),
-    [("mypy*", "mypy"), ("pytest\\ tests/solver\\ *", "solver_1"), ("snakemake\\ --cores*", "end_to_end")],
+    [
+        ("mypy*", "mypy"),
+        ("pytest\\ tests/solver", "solver"),
+        ("snakemake\\ *--rerun-incomplete", "end_to_end"),
+    ],
 )
 def test_one_that_fails_is_seen_and_the_others_run(checks, special, check):
     folder = checks(special, "exit 1")
