@@ -85,12 +85,11 @@ def test_no_word_of_test_and_setup_is_ignored():
         assert outcome.returncode == 1 and ("usage" in outcome.stdout or "one word" in outcome.stderr)
 
 
-# one of each check of the Snakefile; tests/unit/command_line has the others
+# one of each check of the Snakefile; tests/unit/command_line has the others, test_workflow.py that of cases
 @pytest.mark.parametrize(
     ("words", "message"),
     [
         ("--config fidelty=fast", "--config has no word 'fidelty'; did you mean ./run --config preset=fast?"),
-        ("--config case=papr", "there is no case 'papr'"),
         ("--config case=paper --config preset=fast", "--config is there 2 times"),
         ("paper", "'paper' is a case, no target; did you mean ./run --config case=paper?"),
         ("--cores 0", "--cores 0 runs nothing and waits for ever: take at least 1"),

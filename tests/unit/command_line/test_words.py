@@ -2,6 +2,7 @@
 """Words of --config: their values as they were typed; unknown ones, and values that cannot be, refused."""
 
 import pytest
+from snakemake.cli import parse_config
 
 from bedchain.command_line.words import CHOICES, as_typed, check_words
 from bedchain.errors import UserError
@@ -12,9 +13,8 @@ from made import ROOT
     "text", ["2024", "2024_11_25", "1e5", "0700", "007", "True", "nan", "1.50", "[a]", "{b: c}", "~"]
 )
 def test_what_looks_like_a_number_is_text_where_a_name_is_expected(text):
-    parsed = {"case": 20241125, "preset": ["x=y"], "tradeoff": {"dem": "all"}}  # as snakemake reads them
     typed = [f"case={text}", "preset=x=y", "tradeoff={dem: all}"]
-    assert as_typed(parsed, typed) == {"case": text, "preset": "x=y", "tradeoff": {"dem": "all"}}
+    assert as_typed(parse_config(typed), typed) == {"case": text, "preset": "x=y", "tradeoff": {"dem": "all"}}
 
 
 def test_quotes_are_understood_as_before():
