@@ -176,15 +176,15 @@ def test_bubbles_of_rolls_and_of_the_model(bed, tmp_path):
 
 
 def test_film_shows_every_step_and_moves(bed, tmp_path):
-    film = tmp_path / "film.mp4"
+    film, shown = tmp_path / "film.mp4", Window(2.0, 2.25)
     make_film(
-        bed.files, list(bed.transitions.values()), film, COMPARE,
+        bed.files, list(bed.transitions.values()), film, shown,
         Halves(SPLITS.split_x_m, ["#4477aa", "#ee7733"]), Slab(DIAMETER, DIAMETER), 0.01, seed=1,
     )  # fmt: skip
     frames = imageio_ffmpeg.read_frames(str(film))
     wide, high = next(frames)["size"]
     pictures = [np.frombuffer(frame, np.uint8).reshape(high, wide, 3).astype(int) for frame in frames]
-    assert len(pictures) == round((COMPARE[1] - COMPARE[0]) / LAG) + 1
+    assert len(pictures) == round((shown.end_s - shown.start_s) / LAG) + 1
     panels = 2 + len(bed.transitions)
     changed = (np.abs(pictures[0] - pictures[-1]) > 60).any(axis=2)
     blue = pictures[0][..., 2] - pictures[0][..., 0] > 60

@@ -61,11 +61,11 @@ def test_frames_without_ids_say_what_that_means(tmp_path):
 
 def test_a_track_gets_even_times_few_cells_and_the_units_of_tracks(tmp_path):
     """Locations of one tracer in mm and ms, out of order, two of them at one time, as PEPT gives them."""
-    rng = np.random.default_rng(1)
-    places = 100 + 15 * np.sin(np.cumsum(rng.normal(0, 0.4, (400, 3)), axis=0))
-    times = np.cumsum(rng.uniform(5, 25, 400))
+    rng, number = np.random.default_rng(1), 150
+    places = 100 + 15 * np.sin(np.cumsum(rng.normal(0, 0.4, (number, 3)), axis=0))
+    times = np.cumsum(rng.uniform(5, 25, number))
     times[7] = times[6]
-    rows = rng.permutation(np.column_stack((times, places, rng.random(400))))
+    rows = rng.permutation(np.column_stack((times, places, rng.random(number))))
     lines = "\n".join(" ".join(f"{value:.18e}" for value in row) for row in rows)
     (tmp_path / "track.csv").write_text("# t x y z error\n" + lines + "\n")
     case = case_of(tmp_path / "track.csv")
