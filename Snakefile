@@ -14,6 +14,7 @@ from snakemake.cli import get_argument_parser
 
 sys.path.insert(0, f"{workflow.basedir}/scripts")
 
+from bedchain.case.two_fluid import is_two_fluid
 from bedchain.command_line.failures import failure_report
 from bedchain.lifetime import begin_run, end_all_at_sigterm
 from bedchain.rule_files import code, source_files
@@ -49,12 +50,16 @@ FIGURES = f"results/{FOLDER}/figures"
 LOGS = f"logs/{FOLDER}"
 BENCHMARKS = f"benchmarks/{FOLDER}"
 NETWORK = "network" in CASE  # chains that are written down: no particles, and nothing to learn from
+TWO_FLUID = is_two_fluid(CASE)  # gas and solids as two fluids: no particles either
 FORMS = {form: f".{form}" for form in ["png", "pdf", "csv"]}
 # what people look at, on one page: of both beds where both are made
 REPORT = "results/report.html" if WITH_PAPER else f"{RESULTS}/report.html"
 
 
-include: "scripts/network_files.smk" if NETWORK else "scripts/bed_files.smk"
+KIND = "network" if NETWORK else "two_fluid" if TWO_FLUID else "bed"
+
+
+include: f"scripts/{KIND}_files.smk"
 
 
 rule all:
@@ -63,13 +68,11 @@ rule all:
         REPORT if WORDS.get("studies", True) else [],
 
 
-if NETWORK:
+include: f"scripts/{KIND}.smk"
 
-    include: "scripts/network.smk"
 
-else:
+if KIND == "bed":
 
-    include: "scripts/bed.smk"
     include: "scripts/chains.smk"
     include: "scripts/figures.smk"
 
@@ -88,7 +91,7 @@ if WITH_PAPER:
 
 if WORDS.get("studies", True):
 
-    if not NETWORK:
+    if KIND == "bed":
 
         include: "scripts/studies.smk"
     include: "scripts/report.smk"
@@ -101,6 +104,7 @@ if TYPED and WORDS.get("studies", True):
         WORDS,
         [rule.name for rule in workflow.rules],
         {NAME, FOLDER, *(["paper"] if WITH_PAPER else [])},
+        CASE,
     )
 
 

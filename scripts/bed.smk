@@ -5,7 +5,6 @@ from bedchain.workflow import frame_files, solver_values
 
 DRUM = "liggghts_inputs/drum"
 SCENE = ["bed", "particles", "contact", "gas", "drum"]
-AUDITED = [*SCENE, "mixing"]
 
 
 rule build_solver:
@@ -43,21 +42,7 @@ rule write_parameters:
         "python scripts/write_parameters.py {input.case} {params.folder} 2>&1 | tee {log} >&2"
 
 
-# First of all that can run: what it warns of is read before the particles have taken hours.
-rule audit_scene:
-    input:
-        code("audit_scene"),
-    output:
-        table=f"{RESULTS}/audit.csv",
-    log:
-        f"{LOGS}/audit_scene.log",
-    priority: 1
-    conda:
-        "../envs/python.yaml"
-    params:
-        case={section: CASE[section] for section in AUDITED if section in CASE},
-    script:
-        "audit_scene.py"
+include: "audit_scene.smk"
 
 
 # Hours for a large bed, so no edit of a script reruns it. Its state, dem/, is no declared output:

@@ -14,6 +14,7 @@ import numpy as np
 import pyvista
 
 from bedchain.array_files import read_arrays
+from bedchain.case.particle_free import require_particles
 from bedchain.errors import UserError, report_user_errors
 from bedchain.files import atomic_file, write_text
 from bedchain.trajectory.cell_store import open_cells
@@ -111,8 +112,10 @@ def main() -> None:
         description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter
     )
     parser.add_argument("case", help="name of the case")
+    case = parser.parse_args().case
     with report_user_errors():
-        print(export_bed(Path("results") / parser.parse_args().case))
+        require_particles(case)
+        print(export_bed(Path("results") / case))
 
 
 if __name__ == "__main__":

@@ -16,6 +16,7 @@ import pandas as pd
 from matplotlib import pyplot as plt
 from matplotlib.axes import Axes
 
+from bedchain.case.particle_free import require_particles
 from bedchain.dem.gas_field import GasField, read_gas_field
 from bedchain.dem.segments import frame_columns, read_parameters
 from bedchain.errors import UserError, report_user_errors
@@ -183,8 +184,10 @@ def main() -> None:
         description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter
     )
     parser.add_argument("case", nargs="?", default="short", help="name of the case (default: short)")
-    results = Path("results") / parser.parse_args().case
+    case = parser.parse_args().case
+    results = Path("results") / case
     with report_user_errors():
+        require_particles(case)
         state = look_at_bed(results)
         print(f"{results}/look.png: {len(state.x_m)} particles at {state.time_s:.4g} s, of {state.frame}")
 

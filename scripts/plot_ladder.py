@@ -13,7 +13,7 @@ from bedchain.files import write_csv
 from bedchain.stage import run_stage
 from bedchain.studies.ladder.answers import QUANTITIES
 
-COLUMNS = 4
+COLUMNS = 5
 # families by colour, members by marker
 FAMILIES = {
     "bedFoam": "#222222",
@@ -27,6 +27,7 @@ FAMILIES = {
     "two-phase": "#997700",
     "plug flow": "#888888",
 }
+OTHER = "#cc3311"  # models that ran elsewhere
 MARKERS = "osD^vP"
 LEAST_ERROR, MOST_ERROR, LEAST_COST_S = 0.1, 60.0, 1e-5  # beyond, a mark stands at the edge
 NOTE = """Error in noise floors: the dotted line is what another realisation of the simulation (mixing) or
@@ -84,9 +85,14 @@ def draw(axes: Axes, rows: pd.DataFrame, models: list[str]) -> None:
 
 def style_of(model: str, models: list[str]) -> tuple[str, str]:
     """Colour of a model's family, and its marker within it."""
-    family = next(name for name in FAMILIES if model.startswith(name))
-    members = [other for other in models if other.startswith(family)]
-    return FAMILIES[family], MARKERS[members.index(model) % len(MARKERS)]
+    family = next((name for name in FAMILIES if model.startswith(name)), "")
+    members = [other for other in models if other.startswith(family) and (family or not known(other))]
+    return FAMILIES.get(family, OTHER), MARKERS[members.index(model) % len(MARKERS)]
+
+
+def known(model: str) -> bool:
+    """Whether a model belongs to a family."""
+    return model.startswith(tuple(FAMILIES))
 
 
 if rule := globals().get("snakemake"):

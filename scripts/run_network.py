@@ -8,6 +8,7 @@ from typing import Any, NamedTuple
 import numpy as np
 import pandas as pd
 
+from bedchain.chains.networks import mixture as mixture_tables
 from bedchain.chains.networks import outputs
 from bedchain.chains.networks.mixer import loading_variances
 from bedchain.chains.networks.network import REACTED
@@ -73,9 +74,9 @@ def run_network(network: dict[str, Any], place: str, metrics: Path, tables: Tabl
         if chain.moments_s:
             made["pulses"].append(outputs.pulses_table(chain))
     for mixture in network["mixtures"]:
-        table = outputs.mixtures_table(mixture, by_name, place)
+        table = mixture_tables.mixtures_table(mixture, by_name, place)
         made["mixtures"] += [table] if mixture["show"] else []
-        rows.append(outputs.mixture_metrics(table, outputs.limit_of(by_name[mixture["key"]])))
+        rows.append(mixture_tables.mixture_metrics(table, mixture_tables.limit_of(by_name[mixture["key"]])))
     made["conversion"] = [
         outputs.conversion_table(chain)
         for chain in chains

@@ -15,7 +15,7 @@ from bedchain.case.parameters import openfoam_text, solver_parameters
 from bedchain.case.schema import Case, load_schema
 from bedchain.case.two_fluid import two_fluid_case
 from bedchain.dem.parameter_files import write_if_changed
-from bedchain.dem.two_fluid import read_flow, run_two_fluid
+from bedchain.dem.two_fluid import read_run, run_two_fluid
 from bedchain.errors import report_user_errors
 from bedchain.files import locked_folder
 from bedchain.lifetime import end_with_run
@@ -43,7 +43,7 @@ def run_and_summarise(case: Case, folder: Path) -> None:
     with locked_folder(run):
         write_if_changed(run / "caseParameters", openfoam_text(solver_parameters(case, load_schema())))
         run_two_fluid(run, case)
-        write_summary(summarise(*read_flow(run), case), folder)
+        write_summary(summarise(read_run(run), case), folder)
 
 
 if __name__ == "__main__":

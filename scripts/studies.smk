@@ -244,27 +244,7 @@ rule ladder:
         expand(f"{FIGURES}/fig_ladder{{form}}", form=FORMS.values()),
 
 
-# Its run is kept in segments: one that was stopped goes on.
-rule run_two_fluid:
-    input:
-        source_files("openfoam_case", "two_fluid/*/*"),
-        "openfoam_case/system/blockMeshDict",
-        case=ancient(f"cases/{NAME}/case.yaml"),
-    output:
-        record=f"{BED}/two_fluid/{{mm}}mm/record.json",
-    log:
-        f"{LOGS}/run_two_fluid_{{mm}}mm.log",
-    benchmark:
-        f"{BENCHMARKS}/run_two_fluid_{{mm}}mm.tsv"
-    wildcard_constraints:
-        mm=r"[\d.]+",
-    conda:
-        "../envs/python.yaml"
-    params:
-        folder=subpath(output.record, parent=True),
-        cell_m=lambda wildcards: float(wildcards.mm) / 1000,
-    shell:
-        "python scripts/run_two_fluid.py {input.case} {params.folder} --cell {params.cell_m} 2>&1 | tee {log} >&2"
+include: "run_two_fluid.smk"
 
 
 # Alone on the machine, since it measures times.
@@ -279,6 +259,7 @@ rule study_ladder:
         mixing=f"{RESULTS}/mixing.csv",
         choice=CHOICE,
         two_fluid=ARCHIVED_TWO_FLUID + expand(f"{BED}/two_fluid/{{mm}}mm/record.json", mm=TWO_FLUID_MM),
+        others=source_files(f"cases/{NAME}", "ladder/*.json"),
     output:
         ladder=f"{RESULTS}/ladder.csv",
     log:

@@ -8,13 +8,14 @@ import pandas as pd
 
 from bedchain.case.chosen import read_choice
 from bedchain.case.schema import Case
+from bedchain.dem.memory import memory_needs
 from bedchain.dem.series import read_series
 from bedchain.files import write_csv
 from bedchain.physics.two_phase import RegimeError
 from bedchain.stage import LOG, run_stage
 from bedchain.studies.cost.window_time import dem_row
 from bedchain.studies.ladder import models
-from bedchain.studies.ladder.answers import Answer, ladder_rows
+from bedchain.studies.ladder.answers import Answer, ladder_rows, read_answer
 from bedchain.studies.ladder.simulated import dem_rows, read_curves, truth_of
 from bedchain.studies.two_fluid_summary import read_summary
 from bedchain.trajectory.frames import Window
@@ -42,8 +43,8 @@ class LadderInputs:
 
 
 def study_ladder(
-    bed: BedFiles, inputs: LadderInputs, two_fluid: list[Path], ladder: Path, case: Case
-) -> None:  # fmt: skip
+    bed: BedFiles, inputs: LadderInputs, two_fluid: list[Path], others: list[Path], ladder: Path, case: Case
+) -> None:
     """Ask every model what it can say of the bed, beside each other on one core.
 
     Parameters
@@ -52,6 +53,8 @@ def study_ladder(
     inputs : LadderInputs
     two_fluid : list of Path
         ``record.json`` of each two-fluid run, in the folder of its summary; may be empty.
+    others : list of Path
+        ``cases/<case>/ladder/*.json``: models that ran elsewhere, as `answers.write_answer` writes them.
     ladder : Path
         Table to make: model, quantity, value, truth, unit, error_1, noise_floor_1, error_floors,
         cost_s_per_s, learning_s, memory_mb, note.
@@ -75,7 +78,9 @@ def study_ladder(
     except RegimeError as error:
         LOG.info("two-phase: %s", error)
     answers.append(models.plug_flow(window_s, run.interval_s))
-    rows = [dem_rows(truth, spent / window_s), ladder_rows(answers, truth)]
+    answers += [read_answer(file) for file in others]
+    memory_mb = memory_needs(case)["the simulation"] / 1e6
+    rows = [dem_rows(truth, spent / window_s, memory_mb), ladder_rows(answers, truth)]
     write_csv(pd.concat(rows, ignore_index=True), ladder)
 
 

@@ -33,6 +33,7 @@ OF_CASE: dict[str, tuple[tuple[str, ...], Builder]] = {
     "costs": (("timing.csv",), case_tables.costs),
     "agreement": (("agreement.csv",), case_tables.agreement),
     "steadiness": (("stationarity.csv",), case_tables.steadiness),
+    "ladder": (("ladder.csv",), case_tables.ladder),
     "cells_and_lags": (("discussion.csv",), case_tables.cells_and_lags),
     "preset_errors": (("preset_errors.csv",), study_tables.preset_errors),
     "tradeoff_mixing": (("tradeoff.csv",), study_tables.mixing_by_cell_and_lag),
@@ -65,6 +66,7 @@ OF_STUDY: dict[str, tuple[str, str, Builder]] = {
 # picture in .github -> the figure that it is a smaller copy of
 PICTURES = {
     "snapshot": "results/paper/figures/snapshot.png",
+    "ladder": "results/paper/figures/fig_ladder.png",
     "tradeoff": "results/short/figures/fig_tradeoff.png",
     "tradeoff_dem": "results/short/figures/fig_tradeoff_dem.png",
 }

@@ -3,6 +3,7 @@
 
 import os
 import re
+import threading
 from pathlib import Path
 
 BYTES_IN_KB, BYTES_IN_MB = 1024, 1e6
@@ -33,6 +34,18 @@ def peak_memory_mb(process: int | str = "self") -> float:
     """
     match = PEAK.search((Path("/proc") / str(process) / "status").read_text(errors="replace"))
     return int(match[1]) * BYTES_IN_KB / BYTES_IN_MB if match else 0.0
+
+
+def children_peak_mb() -> float:
+    """Largest `peak_memory_mb` of the processes that this thread has started and that run; 0 without any."""
+    listed = Path(f"/proc/self/task/{threading.get_native_id()}/children")
+    peaks = [0.0]
+    try:
+        for process in listed.read_text().split():
+            peaks.append(peak_memory_mb(process))
+    except OSError:  # ended meanwhile, or a system that keeps no such list
+        pass
+    return max(peaks)
 
 
 def forget_peak() -> bool:

@@ -13,9 +13,11 @@ from bedchain.case.load import load_case, with_new_names
 from bedchain.case.names import case_name_problem, is_name
 from bedchain.case.network_checks import NETWORK
 from bedchain.case.parameters import solver_parameters
+from bedchain.case.particle_free import particle_free
 from bedchain.case.presets import preset_named, read_presets, with_preset
 from bedchain.case.scene_checks import used_keys
 from bedchain.case.schema import Case, load_schema
+from bedchain.case.two_fluid import is_two_fluid
 from bedchain.chains.networks.page import chains_of, starts_and_exits
 from bedchain.command_line.peers import peers_options
 from bedchain.command_line.targets import check_options, check_targets
@@ -70,11 +72,15 @@ def options_or_exit(options: Sequence[str], cores: int | None, jobs: int | None)
 
 
 def targets_or_exit(
-    targets: Collection[str], words: Mapping[str, Any], rules: Collection[str], folders: Collection[str]
+    targets: Collection[str],
+    words: Mapping[str, Any],
+    rules: Collection[str],
+    folders: Collection[str],
+    case: Case,
 ) -> None:
     """`check_targets`; on an error its message, and snakemake ends before any job."""
     with report_user_errors():
-        check_targets(targets, words, rules, case_names(), folders)
+        check_targets(targets, words, rules, case_names(), folders, particle_free(case))
 
 
 def peers_or_exit(option: object) -> str:
@@ -125,6 +131,10 @@ def case_or_exit(name: str, preset: str | None = None) -> Case:
             if preset:
                 raise UserError(f"{file} is a network, whose chains are written down: leave preset= out")
             chains_of(case[NETWORK], str(file))
+        if preset and is_two_fluid(case):
+            raise UserError(
+                f"{file} is a bed of two fluids, from which no chain is learned: leave preset= out"
+            )
         return with_preset(case, preset_named(preset)) if preset else case
 
 

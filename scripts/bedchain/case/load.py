@@ -18,6 +18,7 @@ from bedchain.case.network_checks import NETWORK, bed_problems, network_schema
 from bedchain.case.scene_checks import checked_keys
 from bedchain.case.schema import SCHEMA_FILE, Case, Schema, case_value, load_schema, schema_keys
 from bedchain.case.strict_yaml import Lines, read_yaml
+from bedchain.case.two_fluid import is_two_fluid, particle_problems
 from bedchain.errors import CaseError, Problem, UserError
 
 LOG = logging.getLogger(__name__)
@@ -68,6 +69,8 @@ def load_case(
         schema = network_schema(schema)
     elif FRAMES in data:
         data, schema = _with_frames(data, schema, lines, file, measure)
+    elif is_two_fluid(data) and (problems := particle_problems(data, schema["properties"], lines)):
+        raise CaseError(file, problems)
     errors = Draft202012Validator(schema).iter_errors(data)
     problems = list(dict.fromkeys(problem for error in errors for problem in _explain(error, schema, lines)))
     broken = {problem.key for problem in problems}

@@ -9,6 +9,7 @@ import numpy as np
 
 from bedchain.case.check_registry import Finding, reads
 from bedchain.case.frame_checks import FRAMES, without_simulation
+from bedchain.case.two_fluid import is_two_fluid, without_particles
 from bedchain.physics.packing import START_SPACING_DIAMETERS
 from bedchain.physics.whole_numbers import is_multiple, nearest_multiple
 
@@ -17,7 +18,7 @@ UNUSED_WITHOUT_GAS = {"time": ("gas_step_s", "ramp_s"), "contact": ("largest_ove
 
 
 def used_keys(case: dict[str, Any]) -> dict[str, Any]:
-    """The case less the keys that its scene does not use: those of the gas, or of frames the solvers'.
+    """The case less the keys that its scene does not use: of gas, of particles, or of frames the solvers'.
 
     Parameters
     ----------
@@ -26,6 +27,8 @@ def used_keys(case: dict[str, Any]) -> dict[str, Any]:
     """
     if FRAMES in case:
         return without_simulation(case)
+    if is_two_fluid(case):
+        return without_particles(case)
     gas = case.get("gas")
     if not isinstance(gas, dict) or gas.get("model") != "none":
         return case

@@ -16,6 +16,11 @@ READERS = {
     "peers": ("peers", "compare_peers"),
     "study": ("readme",),
 }
+# targets of a bed of particles
+OF_PARTICLES = (
+    *("verify", "validate", "peers", "ladder", "scores", "tradeoff"),
+    *("stability", "bands", "estimate", "readme"),
+)
 
 
 def check_options(options: Sequence[str], cores: int | None, jobs: int | None) -> None:
@@ -56,6 +61,7 @@ def check_targets(
     rules: Collection[str],
     cases: Collection[str],
     folders: Collection[str],
+    kind: str = "",
 ) -> None:
     """Refuse targets that are none, and words of a study without its target, with the line probably meant.
 
@@ -69,6 +75,8 @@ def check_targets(
         All names that there are.
     folders : collection of str
         Of the results that this run can make.
+    kind : str
+        What the case is, where it has no particles.
 
     Raises
     ------
@@ -79,6 +87,9 @@ def check_targets(
             _check_file(target, words, cases, folders)
         elif target not in rules:
             others = [other for other in targets if other != target]
+            if kind and target in OF_PARTICLES:
+                meant = typed_line(targets, words, case="short")
+                raise UserError(f"{target} needs particles, and this case is {kind}; did you mean {meant}?")
             raise UserError(f"{target!r} is {_no_target(target, others, words, rules, cases)}")
     for key in words.keys() & READERS.keys():
         if not any("/" in target or target in READERS[key] for target in targets):

@@ -9,69 +9,27 @@ import json
 import math
 import re
 import shutil
-import sys
-import time
 from pathlib import Path
 from typing import Any, NamedTuple
 
 import numpy as np
 import pandas as pd
-from numpy.typing import NDArray
 
 from bedchain.array_files import read_arrays
 from bedchain.case.schema import Case
 from bedchain.case.two_fluid import DRAG
-from bedchain.dem.gas_case import copy_last_state, last_time
-from bedchain.dem.processes import clock_text, run_logged
+from bedchain.dem.gas_case import copy_last_state
+from bedchain.dem.processes import run_logged
+from bedchain.dem.two_fluid_balance import COLUMNS, OUTSIDE_PA, balance_table, read_balance
 from bedchain.dem.two_fluid_fields import Flow, read_frame
+from bedchain.dem.two_fluid_start import field_text, grid_of, largest_solids, start_solids
+from bedchain.dem.two_fluid_watch import Progress, check_solids, drift_of, fastest_place, read_series
 from bedchain.errors import UserError
 from bedchain.files import atomic_folder, write_arrays, write_csv, write_text
-from bedchain.physics.packing import PACKED_AREA_SHARE, slab_voidage
 
 TEMPLATES, MESH = Path("openfoam_case/two_fluid"), Path("openfoam_case/system/blockMeshDict")
-CLOSEST_AREA_SHARE = math.pi / (2 * math.sqrt(3))  # of the plane: closest discs
-DRIFT_MAX = 1e-3  # of the solids' mass: the run stops
 WATCH_STEPS, SERIES_STEPS = 50, 5  # between looks at the mass, and at the pressure
-UNEVEN = ((0.05, 1, 0.7), (0.03, 5, 1.3))  # surface at the start: amplitude, half waves, phase
 ROUNDING = 1e-6  # of a frame: a period that ends with it would end before its last step in every fourth frame
-OUTSIDE_PA = 1e5  # pressure at the outlet, in the templates
-TIME = re.compile(r"^Time = (\S+)")
-EXECUTION = re.compile(r"ExecutionTime = (\S+) s")
-
-
-class Grid(NamedTuple):
-    """Cells of a two-fluid run: numbers along height and width, edge [m]."""
-
-    nz: int
-    nx: int
-    cell_m: float
-
-
-def grid_of(case: Case) -> Grid:
-    """The gas cells of a case."""
-    bed, cell = case["bed"], case["gas"]["cell_size_m"]
-    return Grid(round(bed["height_m"] / cell), round(bed["width_m"] / cell), cell)
-
-
-def largest_solids(case: Case) -> float:
-    """Share of the solids that none exceeds [1]: closest discs in the slab, three digits."""
-    thickness = case["bed"]["thickness_m"] / case["particles"]["diameter_m"]
-    return round(1 - slab_voidage(CLOSEST_AREA_SHARE, thickness), 3)
-
-
-def start_solids(case: Case) -> NDArray[np.float64]:
-    """Share of the solids of each cell at the start, (nz, nx): a settled bed with an uneven surface [1]."""
-    grid, bed, particles = grid_of(case), case["bed"], case["particles"]
-    settled = 1 - slab_voidage(PACKED_AREA_SHARE, bed["thickness_m"] / particles["diameter_m"])
-    volume = particles["number"] * math.pi / 6 * particles["diameter_m"] ** 3
-    height = volume / (settled * bed["width_m"] * bed["thickness_m"])
-    x = (np.arange(grid.nx) + 0.5) / grid.nx
-    surface = np.ones(grid.nx)
-    for size, waves, phase in UNEVEN:
-        surface += size * np.sin(math.pi * waves * x + phase)
-    surface = surface * height / surface.mean()
-    low = grid.cell_m * np.arange(grid.nz)[:, None]
-    return settled * np.clip((surface - low) / grid.cell_m, 0, 1)
 
 
 def run_two_fluid(folder: Path, case: Case) -> None:
@@ -132,12 +90,6 @@ def prepare(part: Path, parameters: Path, before: Path | None, case: Case, span:
         run_logged(["blockMesh", "-case", str(gas)], part / "log")
 
 
-def field_text(values: NDArray[np.float64]) -> str:
-    """Values of cells as the entry ``internalField`` of OpenFOAM."""
-    numbers = "\n".join(f"{value:.12g}" for value in values.ravel())
-    return f"internalField nonuniform List<scalar> {values.size}\n(\n{numbers}\n);\n"
-
-
 def lost_until(segment: Path) -> float:
     """Solids that left at the top until the end of a segment [kg]; 0 before the first one."""
     record = segment / "segment.json"
@@ -157,73 +109,12 @@ def run_segment(part: Path, case: Case, span: tuple[float, float], lost_kg: floa
         run_logged(["twoPhaseEulerFoam", "-case", str(gas)], part / "log", progress)
     except UserError as error:
         raise UserError(
-            f"the two-fluid run became unstable at {progress.now_s:g} s: take a smaller time.gas_step_s or a "
-            f"larger gas.cell_size_m\n{error}"
+            f"the two-fluid run became unstable at {progress.now_s:g} s{fastest_place(gas, case)}: take a "
+            f"smaller time.gas_step_s or a larger gas.cell_size_m\n{error}"
         ) from None
     lost = lost_kg + check_solids(gas, case, span, lost_kg)
-    return {"start_s": span[0], "end_s": span[1], "cpu_s": progress.cpu_s, "lost_kg": lost}
-
-
-def drift_of(gas: Path, case: Case, lost_kg: float) -> tuple[pd.DataFrame, float]:
-    """What solids in the bed and those that left sum to, over those at the start, less 1; and what left [kg].
-
-    Parameters
-    ----------
-    gas : Path
-        OpenFOAM case of a segment.
-    case : dict
-    lost_kg : float
-        Solids that left before [kg].
-
-    Returns
-    -------
-    DataFrame
-        time_s, drift [1].
-    float
-        Solids that left in the segment [kg].
-    """
-    particles = case["particles"]
-    whole = particles["density_kg_m3"] * particles["number"] * math.pi / 6 * particles["diameter_m"] ** 3
-    mass, left = read_series(gas, "solids"), read_series(gas, "left")
-    out = (left["value"] * case["time"]["gas_step_s"]).cumsum()
-    until = np.interp(mass["time_s"], left["time_s"], out, left=0.0)
-    inside = mass["value"] / start_solids(case).mean()
-    drift = inside + (lost_kg + until) / whole - 1
-    return pd.DataFrame({"time_s": mass["time_s"], "drift": drift}), float(out.iloc[-1])
-
-
-def check_solids(gas: Path, case: Case, span: tuple[float, float], lost_kg: float = 0.0) -> float:
-    """Refuse (`UserError`) a segment whose solids drifted or passed their packing limit: time and place.
-
-    What leaves at the top is no drift; it is given back [kg].
-    """
-    mass, lost = drift_of(gas, case, lost_kg)
-    drift = mass["drift"]
-    if (far := drift.abs() > DRIFT_MAX).any():
-        at = int(np.flatnonzero(far)[0])
-        raise UserError(
-            f"at {mass['time_s'].iloc[at]:g} s the solids' mass is {drift.iloc[at]:+.2%} off, more than "
-            f"{DRIFT_MAX:.1%}: take a smaller time.gas_step_s"
-        )
-    limit, largest = largest_solids(case), read_series(gas, "largest")
-    if (over := largest["value"] > limit).any():
-        at = int(np.flatnonzero(over)[0])
-        grid, last = grid_of(case), last_time(gas)
-        assert last is not None
-        solids = read_frame(last, grid.nz, grid.nx, 1.0)[0]
-        row, column = np.unravel_index(int(solids.argmax()), solids.shape)
-        raise UserError(
-            f"at {largest['time_s'].iloc[at]:g} s a cell has {largest['value'].iloc[at]:.3f} of solids, over "
-            f"the packing limit {limit:g} (densest at {span[1]:g} s: x {grid.cell_m * (column + 0.5):.3g} "
-            f"m, z {grid.cell_m * (row + 0.5):.3g} m): take a smaller time.gas_step_s"
-        )
-    return lost
-
-
-def read_series(gas: Path, name: str) -> pd.DataFrame:
-    """Series of a function of the solver, (time_s, value)."""
-    (file,) = (gas / "postProcessing" / name).glob("*/*.dat")
-    return pd.read_csv(file, sep=r"\s+", comment="#", names=["time_s", "value"])
+    spent = {"cpu_s": progress.cpu_s, "memory_mb": progress.memory_mb}
+    return {"start_s": span[0], "end_s": span[1], **spent, "lost_kg": lost}
 
 
 def keep_frames(part: Path, case: Case, span: tuple[float, float], lost_kg: float) -> None:
@@ -232,7 +123,8 @@ def keep_frames(part: Path, case: Case, span: tuple[float, float], lost_kg: floa
     times = [item for item in gas.iterdir() if re.fullmatch(r"[0-9.]+", item.name)]
     times.sort(key=lambda item: float(item.name))
     frames = [item for item in times if float(item.name) > span[0] + 1e-9]
-    solids, right, up = zip(*(read_frame(item, grid.nz, grid.nx, density) for item in frames), strict=True)
+    shape = grid.rows, grid.columns
+    solids, right, up = zip(*(read_frame(item, *shape, density) for item in frames), strict=True)
     write_arrays(
         part / "flow.npz",
         {
@@ -242,6 +134,8 @@ def keep_frames(part: Path, case: Case, span: tuple[float, float], lost_kg: floa
             "up": np.array(up, np.float32),
         },
     )
+    terms = [read_balance(item, shape, case, largest_solids(case)) for item in frames]
+    write_csv(balance_table([float(item.name) for item in frames], terms), part / "balance.csv")
     pressure = read_series(gas, "pressure")
     mass, _ = drift_of(gas, case, lost_kg)
     table = pd.DataFrame(
@@ -257,8 +151,31 @@ def keep_frames(part: Path, case: Case, span: tuple[float, float], lost_kg: floa
         shutil.rmtree(item)
 
 
-def read_flow(folder: Path) -> tuple[Flow, pd.DataFrame, float]:
-    """Frames, series and processor time for each simulated second of all segments of a run.
+class Run(NamedTuple):
+    """A two-fluid run.
+
+    Attributes
+    ----------
+    flow : Flow
+    series : DataFrame
+        time_s, pressure_drop_Pa, solids_drift_1.
+    balance : DataFrame
+        As of `two_fluid_balance.balance_table`; empty for a run that did not keep them.
+    cpu_s_per_s : float
+        Processor time for a simulated second [s].
+    memory_mb : float
+        Peak of the solver [MB]; NaN for a run that did not keep it.
+    """
+
+    flow: Flow
+    series: pd.DataFrame
+    balance: pd.DataFrame
+    cpu_s_per_s: float
+    memory_mb: float = math.nan
+
+
+def read_run(folder: Path) -> Run:
+    """All segments of a run.
 
     Raises
     ------
@@ -274,40 +191,8 @@ def read_flow(folder: Path) -> tuple[Flow, pd.DataFrame, float]:
     )
     records = [json.loads((part / "segment.json").read_text()) for part in parts]
     cost = sum(item["cpu_s"] for item in records) / sum(item["end_s"] - item["start_s"] for item in records)
-    return flow, pd.concat([pd.read_csv(part / "series.csv") for part in parts], ignore_index=True), cost
-
-
-class Progress:
-    """Progress of the solver on stderr every few seconds.
-
-    Parameters
-    ----------
-    end_s : float
-        Simulated time at the end of the whole run [s].
-    start_s : float
-        Simulated time at the start of the segment [s].
-    """
-
-    EVERY_S = 10.0
-
-    def __init__(self, end_s: float, start_s: float) -> None:
-        self.end_s, self.start_s, self.now_s, self.cpu_s = end_s, start_s, start_s, 0.0
-        self.began = self.last = time.monotonic()
-
-    def __call__(self, line: str) -> None:
-        """Take one line of the solver's output."""
-        if match := EXECUTION.search(line):
-            self.cpu_s = float(match[1])
-        if not (match := TIME.match(line)):
-            return
-        self.now_s = float(match[1])
-        if (now := time.monotonic()) - self.last < self.EVERY_S:
-            return
-        self.last = now
-        cost = (now - self.began) / max(self.now_s - self.start_s, 1e-9)
-        print(
-            f"two_fluid: {self.now_s:.3f} of {self.end_s:g} s simulated, {cost:.0f} s per simulated second, "
-            f"{clock_text(cost * max(self.end_s - self.now_s, 0))} left",
-            file=sys.stderr,
-            flush=True,
-        )
+    series = pd.concat([pd.read_csv(part / "series.csv") for part in parts], ignore_index=True)
+    kept = [pd.read_csv(part / "balance.csv") for part in parts if (part / "balance.csv").exists()]
+    balance = pd.concat(kept, ignore_index=True) if kept else pd.DataFrame(columns=COLUMNS)
+    memory_mb = max(item.get("memory_mb", math.nan) for item in records)
+    return Run(flow, series, balance, cost, memory_mb)

@@ -11,7 +11,11 @@ from numpy.typing import NDArray
 from bedchain.errors import DataError
 
 Array = NDArray[np.float64]
-VALUES = re.compile(rb"internalField\s+(?:nonuniform List<scalar>\s*(\d+)\s*\(|uniform\s+([-+.\deE]+)\s*;)")
+NUMBER = rb"[-+.\deE]+"
+VALUES = re.compile(
+    rb"internalField\s+(?:nonuniform List<(?:scalar|vector)>\s*(\d+)\s*\("
+    rb"|uniform\s+\(?(" + NUMBER + rb"(?: " + NUMBER + rb")*)\)?\s*;)"
+)
 
 
 class Flow(NamedTuple):
@@ -54,15 +58,24 @@ def read_scalars(file: Path, number: int) -> Array:
     DataError
         The file holds another number of values, or is cut off.
     """
+    return _read(file, number, 1)[:, 0]
+
+
+def read_vectors(file: Path, number: int) -> Array:
+    """`read_scalars` of a volVectorField, (number, 3)."""
+    return _read(file, number, 3)
+
+
+def _read(file: Path, number: int, parts: int) -> Array:
     content = file.read_bytes()
     match = VALUES.search(content)
     if match is None:
-        raise DataError(f"{file} holds no scalar field of OpenFOAM")
+        raise DataError(f"{file} holds no {'scalar' if parts == 1 else 'vector'} field of OpenFOAM")
     if match[2]:
-        return np.full(number, float(match[2]))
-    if int(match[1]) != number or len(content) < match.end() + 8 * number:
+        return np.tile([float(value) for value in match[2].split()], (number, 1))
+    if int(match[1]) != number or len(content) < match.end() + 8 * parts * number:
         raise DataError(f"{file} holds {int(match[1])} values or is cut off, {number} expected")
-    return np.frombuffer(content, "<f8", number, match.end()).copy()
+    return np.frombuffer(content, "<f8", parts * number, match.end()).reshape(number, parts).copy()
 
 
 def split_faces(values: Array, nz: int, nx: int) -> tuple[Array, Array]:

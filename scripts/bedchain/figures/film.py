@@ -8,7 +8,7 @@ from matplotlib import colormaps
 from matplotlib.colors import to_rgb
 from numpy.typing import NDArray
 
-from bedchain.measures.voidage import Slab
+from bedchain.measures.voidage import Slab, cell_voidage
 from bedchain.trajectory.frames import Frames
 from bedchain.trajectory.grid import Grid
 
@@ -194,6 +194,5 @@ def voidages(frames: Frames, lag: int, grid: Grid, slab: Slab) -> Iterator[NDArr
     (n_cells,) array
         [1]
     """
-    solids = np.pi / 6 * slab.diameter_m**3 / (grid.cell_width_m * grid.cell_height_m * slab.thickness_m)
     for x, z in zip(frames.x_m[::lag], frames.z_m[::lag], strict=True):
-        yield np.asarray(1 - solids * np.bincount(grid.cell_of(x, z), minlength=grid.n_cells), np.float64)
+        yield cell_voidage(x, z, grid, slab)

@@ -13,9 +13,10 @@ from numpy.typing import NDArray
 from scipy import ndimage
 from scipy.spatial import cKDTree
 
-from bedchain.measures.voidage import Slab
+from bedchain.measures.voidage import Slab, cell_voidage
 from bedchain.physics.bubbling_bed import MINIMUM_VOIDAGE
 from bedchain.physics.constants import GRAVITY_M_S2
+from bedchain.trajectory.grid import Grid
 
 VOID = (1 + MINIMUM_VOIDAGE) / 2  # a bubble ends half way between minimum fluidization and no particles
 # no bubble is taken to rise faster: times sqrt(g W), the fall through the bed's width
@@ -27,38 +28,10 @@ SMALLEST_SAMPLE = 5  # bubbles in a row that a mean is given for
 COLUMNS = ["frame", "x_m", "z_m", "diameter_m"]
 
 
-def voidage_map(
-    x_m: NDArray, z_m: NDArray, shape: tuple[int, int], size_m: tuple[float, float], solids_m: float
-) -> NDArray[np.float64]:
-    """Voidage of square cells in a frame.
-
-    Parameters
-    ----------
-    x_m, z_m : (n_particles,) array
-        [m].
-    shape : (int, int)
-        Rows and columns of cells.
-    size_m : (float, float)
-        Height and width of the bed [m].
-    solids_m : float
-        Volume of a particle over the depth of the bed [m2].
-
-    Returns
-    -------
-    (rows, columns) ndarray
-        [1].
-    """
-    rows, columns = shape
-    row = np.clip((z_m * (rows / size_m[0])).astype(np.int64), 0, rows - 1)
-    column = np.clip((x_m * (columns / size_m[1])).astype(np.int64), 0, columns - 1)
-    held = np.bincount(row * columns + column, minlength=rows * columns).reshape(shape)
-    return np.asarray(1 - held * (solids_m * rows * columns / (size_m[0] * size_m[1])), dtype=float)
-
-
 def voidage_maps(
     positions_m: Iterable[NDArray], size_m: tuple[float, float], cell_m: float, slab: Slab
 ) -> Iterator[NDArray[np.float64]]:
-    """`voidage_map` of each frame, (rows, columns) [1].
+    """Voidage of square cells in each frame, (rows, columns) [1].
 
     Parameters
     ----------
@@ -70,9 +43,9 @@ def voidage_maps(
         Edge of a cell [m].
     slab : Slab
     """
-    shape = round(size_m[0] / cell_m), round(size_m[1] / cell_m)
-    solids_m2 = np.pi / 6 * slab.diameter_m**3 / slab.thickness_m
-    return (voidage_map(frame[0], frame[1], shape, size_m, solids_m2) for frame in positions_m)
+    rows, columns = (round(length / cell_m) for length in size_m)
+    grid = Grid(size_m[1], size_m[0], columns, rows)
+    return (cell_voidage(frame[0], frame[1], grid, slab).reshape(rows, columns) for frame in positions_m)
 
 
 def followed_bubbles(

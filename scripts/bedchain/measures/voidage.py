@@ -1,10 +1,12 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Voidage of a one-layer bed by height."""
+"""Voidage of a one-layer bed by height and in cells."""
 
 from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
+
+from bedchain.trajectory.grid import Grid
 
 
 @dataclass(frozen=True)
@@ -47,3 +49,19 @@ def voidage_profiles(
     held = np.array([np.histogram(z, edges_m)[0] for z in z_m])
     volume = np.pi / 6 * slab.diameter_m**3
     return np.asarray(1 - held * volume / (width_m * np.diff(edges_m) * slab.thickness_m))
+
+
+def cell_voidage(
+    x_m: NDArray[np.floating], z_m: NDArray[np.floating], grid: Grid, slab: Slab
+) -> NDArray[np.float64]:
+    """Voidage of the cells in a frame, by the particles whose centres a cell holds, (n_cells,) [1].
+
+    Parameters
+    ----------
+    x_m, z_m : (n_particles,) array
+        Positions [m].
+    grid : Grid
+    slab : Slab
+    """
+    solids = np.pi / 6 * slab.diameter_m**3 / (grid.cell_width_m * grid.cell_height_m * slab.thickness_m)
+    return np.asarray(1 - solids * np.bincount(grid.cell_of(x_m, z_m), minlength=grid.n_cells), np.float64)

@@ -36,7 +36,7 @@ def changed(tmp_path):
 DRUM_MISTAKES = [
     ({"drum": None}, "gas.model", "add drum: {revolution_s: ...}"),
     ({"gas": {"model": "coupled"}}, "gas.model", "does not go with a drum"),
-    ({"gas": {"model": "nothing"}}, "gas.model", "coupled, none"),
+    ({"gas": {"model": "nothing"}}, "gas.model", "coupled, two_fluid, none"),
     ({"bed": {"height_m": 0.25}}, "bed.height_m", "take bed.width_m (0.24 m)"),
     ({"bed": {"layers": "many", "thickness_m": 0.03}}, "bed.layers", "take one"),
     ({"drum": {"revolution_s": 5.25}}, "drum.revolution_s", "multiple of time.frame_interval_s"),

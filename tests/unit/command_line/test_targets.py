@@ -118,3 +118,10 @@ def test_other_targets_are_refused_with_the_line_that_was_meant(targets, words, 
 @pytest.mark.parametrize("targets", [["stability"], ["study_stability"], ["results/stability/stability.csv"]])
 def test_a_word_of_a_study_passes_with_its_target(targets):
     check_targets(targets, {"stability": "reduced"}, [*RULES, "study_stability"], CASES, {"short"})
+
+
+def test_targets_of_particles_are_refused_for_a_case_without_them():
+    message = r"estimate needs particles, .* is a network; did you mean ./run estimate --config case=short"
+    with pytest.raises(UserError, match=message):
+        check_targets(["estimate"], {"case": "riser"}, ["all"], ["riser", "short"], {"riser"}, "a network")
+    check_targets(["all"], {"case": "riser"}, ["all"], ["riser"], {"riser"}, "a network")

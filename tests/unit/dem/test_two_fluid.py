@@ -1,83 +1,40 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Start, watch and progress of a two-fluid run, without the solver."""
+"""Segments of a two-fluid run, without the solver."""
+
+import json
 
 import numpy as np
+import pandas as pd
 import pytest
 
-from bedchain.case.load import load_case
-from bedchain.dem import two_fluid
-from bedchain.dem.two_fluid import Progress, check_solids, field_text, largest_solids, start_solids
+from bedchain.dem.two_fluid import lost_until, read_run
 from bedchain.errors import UserError
-from made import ROOT
+from bedchain.files import write_arrays
 
 
-@pytest.fixture
-def case():
-    return load_case(ROOT / "cases" / "short" / "case.yaml")
+def segment(folder, times_s, **record):
+    folder.mkdir()
+    count = len(times_s)
+    shapes = {"solids": (count, 2, 2), "right": (count, 2, 1), "up": (count, 1, 2)}
+    fields = {name: np.full(shape, times_s[0], np.float32) for name, shape in shapes.items()}
+    write_arrays(folder / "flow.npz", {"times_s": np.array(times_s), **fields})
+    pd.DataFrame({"time_s": times_s, "pressure_drop_Pa": 1.0, "solids_drift_1": 0.0}).to_csv(
+        folder / "series.csv", index=False
+    )
+    (folder / "segment.json").write_text(json.dumps(record))
 
 
-def test_the_bed_at_the_start_holds_all_particles_and_is_uneven(case):
-    solids = start_solids(case)
-    volume = solids.sum() * 0.005**2 * 1e-3
-    assert volume == pytest.approx(9000 * np.pi / 6 * 1e-9, rel=1e-9)
-    assert solids.max() == pytest.approx(0.82 * 2 / 3)
-    assert np.ptp(solids.sum(axis=0)) > 0.1
-    assert solids.max() < largest_solids(case) == 0.605
+def test_segments_are_joined_with_their_cost_and_those_without_a_balance_too(tmp_path):
+    segment(tmp_path / "segment_0001", [0.1, 0.2], start_s=0.0, end_s=0.2, cpu_s=4.0, lost_kg=0.5)
+    segment(tmp_path / "segment_0002", [0.3], start_s=0.2, end_s=0.3, cpu_s=5.0)
+    run = read_run(tmp_path)
+    np.testing.assert_allclose(run.flow.times_s, [0.1, 0.2, 0.3])
+    assert run.flow.up.shape == (3, 1, 2) and len(run.series) == 3 and run.balance.empty
+    assert run.cpu_s_per_s == pytest.approx(30.0)
+    assert lost_until(tmp_path / "segment_0001") == 0.5 and lost_until(tmp_path / "segment_0003") == 0.0
 
 
-def watched(gas, name, values):
-    file = gas / "postProcessing" / name / "0" / f"{name}.dat"
-    file.parent.mkdir(parents=True)
-    lines = [f"{0.025 * (at + 1):g}\t{value:.9e}" for at, value in enumerate(values)]
-    file.write_text("# Time value\n" + "\n".join(lines) + "\n")
-
-
-@pytest.mark.parametrize(("factor", "stops"), [(1.0, False), (1.0005, False), (0.998, True), (1.0011, True)])
-def test_solids_that_drift_stop_the_run_with_the_time(case, tmp_path, factor, stops):
-    mean = start_solids(case).mean()
-    watched(tmp_path, "solids", [mean, factor * mean])
-    watched(tmp_path, "largest", [0.55, 0.6])
-    watched(tmp_path, "left", [0.0, 0.0])
-    if not stops:
-        check_solids(tmp_path, case, (0, 0.05))
-        return
-    with pytest.raises(UserError, match=r"at 0.05 s the solids' mass is [-+]0.\d+% off, more than 0.1%"):
-        check_solids(tmp_path, case, (0, 0.05))
-
-
-def test_solids_that_leave_at_the_top_are_no_drift(case, tmp_path):
-    mean, whole = start_solids(case).mean(), 2600 * 9000 * np.pi / 6 * 1e-9
-    watched(tmp_path, "solids", [0.996 * mean, 0.99 * mean])
-    watched(tmp_path, "largest", [0.55, 0.6])
-    # 0.4 % before, and 0.6 % in the last step
-    watched(tmp_path, "left", [0.0, 0.006 * whole / case["time"]["gas_step_s"]])
-    assert check_solids(tmp_path, case, (0, 0.05), 0.004 * whole) == pytest.approx(0.006 * whole)
-
-
-def test_solids_above_their_packing_limit_are_named_with_time_and_place(case, tmp_path):
-    grid = two_fluid.grid_of(case)
-    watched(tmp_path, "solids", [start_solids(case).mean()] * 2)
-    watched(tmp_path, "largest", [0.55, 0.66])
-    watched(tmp_path, "left", [0.0, 0.0])
-    (tmp_path / "0.05").mkdir()
-    solids = np.full((grid.nz, grid.nx), 0.3)
-    solids[3, 5] = 0.66
-    head = b"internalField nonuniform List<scalar> %d\n("
-    faces = grid.nz * (grid.nx - 1) + (grid.nz - 1) * grid.nx
-    for name, values in (("alpha.particles", solids), ("alphaRhoPhi.particlesMean", np.zeros(faces))):
-        (tmp_path / "0.05" / name).write_bytes(head % values.size + values.tobytes() + b")")
-    with pytest.raises(UserError, match=r"at 0.05 s a cell has 0.660 .* 0.605 .*x 0.0275 m, z 0.0175 m"):
-        check_solids(tmp_path, case, (0, 0.05))
-
-
-def test_values_of_cells_as_openfoam_reads_them():
-    assert field_text(np.array([[0.5, 0]])) == "internalField nonuniform List<scalar> 2\n(\n0.5\n0\n);\n"
-
-
-def test_progress_takes_time_and_cost_of_the_solver_s_lines(capsys):
-    progress = Progress(2.0, 1.0)
-    progress.last -= 60
-    for line in ("Time = 1.5\n", "ExecutionTime = 12.5 s  ClockTime = 13 s\n", "PIMPLE: iteration 1\n"):
-        progress(line)
-    assert progress.now_s == 1.5 and progress.cpu_s == 12.5
-    assert "two_fluid: 1.500 of 2 s simulated" in capsys.readouterr().err
+def test_a_run_without_a_finished_segment_is_refused(tmp_path):
+    (tmp_path / "segment_0001").mkdir()
+    with pytest.raises(UserError, match="holds no finished segment"):
+        read_run(tmp_path)

@@ -4,7 +4,7 @@
 import numpy as np
 import pytest
 
-from bedchain.dem.two_fluid_fields import read_scalars, split_faces
+from bedchain.dem.two_fluid_fields import read_scalars, read_vectors, split_faces
 from bedchain.errors import DataError
 
 HEAD = b"FoamFile { format binary; }\ndimensions [0 0 0 0 0 0 0];\n\ninternalField   "
@@ -25,6 +25,17 @@ def test_values_of_a_binary_field_and_of_a_uniform_one(tmp_path):
     file.write_bytes(b"nothing")
     with pytest.raises(DataError, match="no scalar field"):
         read_scalars(file, 2)
+
+
+def test_vectors_of_a_binary_field_and_of_a_uniform_one(tmp_path):
+    file = tmp_path / "U.particles"
+    values = np.arange(6.0).reshape(2, 3)
+    file.write_bytes(HEAD + b"nonuniform List<vector> \n2\n(" + values.tobytes() + b");\n")
+    np.testing.assert_array_equal(read_vectors(file, 2), values)
+    with pytest.raises(DataError, match="holds 2 values or is cut off, 3 expected"):
+        read_vectors(file, 3)
+    file.write_bytes(HEAD + b"uniform (0 -1.5e-3 2);")
+    np.testing.assert_array_equal(read_vectors(file, 2), [[0, -1.5e-3, 2]] * 2)
 
 
 def test_faces_by_their_lower_cell_then_by_their_upper_one():

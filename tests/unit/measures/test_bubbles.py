@@ -4,7 +4,8 @@
 import numpy as np
 import pytest
 
-from bedchain.measures.bubbles import bubble_table, by_height, rises, voidage_map
+from bedchain.measures.bubbles import bubble_table, by_height, rises, voidage_maps
+from bedchain.measures.voidage import Slab
 
 CELL, INTERVAL, VOID = 0.005, 0.025, 0.7
 PLACE = (np.arange(80) + 0.5) * CELL
@@ -54,5 +55,6 @@ def test_what_jumps_or_sinks_is_not_the_same_bubble():
 
 def test_voidage_of_a_frame_counts_the_particles_of_each_cell():
     x, z = np.array([0.1, 0.1, 1.9]), np.array([0.1, 0.2, 2.9])
-    voidage = voidage_map(x, z, (3, 2), (3.0, 2.0), 0.1)
+    slab = Slab(10 * np.pi / 6, 1.0)  # a sphere takes a tenth of a cell
+    (voidage,) = voidage_maps([np.array([x, z])], (3.0, 2.0), 1.0, slab)
     np.testing.assert_allclose(voidage, [[0.8, 1], [1, 1], [1, 0.9]])

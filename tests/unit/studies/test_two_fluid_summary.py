@@ -6,9 +6,11 @@ import pandas as pd
 import pytest
 
 from bedchain.case.load import load_case
+from bedchain.dem.two_fluid import Run
+from bedchain.dem.two_fluid_balance import COLUMNS
 from bedchain.dem.two_fluid_fields import Flow
 from bedchain.errors import UserError
-from bedchain.studies.two_fluid_summary import read_summary, share_of_side, summarise, write_summary
+from bedchain.studies.two_fluid_summary import read_summary, summarise, write_summary
 from made import ROOT
 
 
@@ -34,18 +36,32 @@ def roll():
 
 
 def pressure():
+    times = 0.005 * np.arange(1, 301)
     return pd.DataFrame(
-        {"time_s": [0.5, 1.0, 1.5], "pressure_drop_Pa": 1200.0, "solids_drift_1": [0, 1e-6, -2e-6]}
+        {
+            "time_s": times,
+            "pressure_drop_Pa": 1200 + 50 * np.sin(2 * np.pi * 4 * times),
+            "solids_drift_1": -2e-6 * times / 1.5,
+        }
     )
 
 
+def balance(frames=60):
+    table = pd.DataFrame(0.0, index=range(frames), columns=COLUMNS)
+    table["time_s"] = 0.025 * np.arange(1, frames + 1)
+    return table.assign(weight_Pa=1000.0, gas_pressure_Pa=900.0, solids_pressure_Pa=70.0)
+
+
 def test_series_profile_and_curves_of_a_roll(case, roll, tmp_path):
-    summary = summarise(roll, pressure(), 12.0, case)
+    summary = summarise(Run(roll, pressure(), balance(), 12.0), case)
     np.testing.assert_allclose(summary.series["mean_height_m"], 0.08)
     np.testing.assert_allclose(summary.series["share_low_1"], 0.5)
     np.testing.assert_allclose(summary.profile["voidage_1"], [0.6] * 8 + [1.0] * 12)
     assert summary.density["share_1"].sum() == pytest.approx(1)
-    assert summary.record["largest_drift_1"] == 2e-6 and summary.record["cpu_s_per_s"] == 12.0
+    assert summary.record["pressure_frequency_Hz"] == pytest.approx(4.0)
+    assert summary.record["pressure_frequency_resolution_Hz"] == pytest.approx(4.0)
+    assert summary.record["carries_weight_1"]["rest"] == pytest.approx(0.03)
+    assert summary.record["largest_drift_1"] == pytest.approx(2e-6) and summary.record["cpu_s_per_s"] == 12.0
     ends = summary.mixing.groupby(["source", "group"])["fraction_remaining_1"].last()
     # the flow never changes: its mean is as good as its frames
     np.testing.assert_allclose(ends["frames"], ends["mean_flow"], rtol=1e-5)
@@ -61,8 +77,12 @@ def test_series_profile_and_curves_of_a_roll(case, roll, tmp_path):
 def test_a_run_that_ended_before_its_window_is_refused(case, roll):
     case["learning"]["start_s"] = 3.0
     with pytest.raises(UserError, match=r"reached 1.5 s, its window starts at 3 s"):
-        summarise(roll, pressure(), 12.0, case)
+        summarise(Run(roll, pressure(), balance(), 12.0), case)
 
 
-def test_cells_that_a_line_cuts():
-    np.testing.assert_allclose(share_of_side(4, 0.1, 0.25), [1, 1, 0.5, 0])
+def test_a_summary_without_a_balance_is_read_too(case, roll, tmp_path):
+    summary = summarise(Run(roll, pressure(), balance(0), 12.0), case)
+    assert "carries_weight_1" not in summary.record
+    write_summary(summary, tmp_path)
+    (tmp_path / "balance.csv").unlink()
+    assert list(read_summary(tmp_path).balance) == COLUMNS

@@ -1,10 +1,18 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Composition of a mixture whose components move by chains of their own on the same states."""
 
+from collections.abc import Mapping
+from typing import Any
+
 import numpy as np
 import pandas as pd
 from numpy.typing import NDArray
 
+from bedchain.chains.networks import checks
+from bedchain.chains.networks.mixer import check_filling
+from bedchain.chains.networks.outputs import ROUND_OFF, Row
+from bedchain.chains.networks.page import PageChain
+from bedchain.errors import UserError
 from bedchain.measures.mixing import lacey_index
 
 Array = NDArray[np.float64]
@@ -82,3 +90,64 @@ def mixture_table(key: Array, total: Array, volume: Array, particles: float, tim
         for at, name in enumerate(MEASURES)
     ]
     return pd.concat(parts, ignore_index=True)
+
+
+def mixtures_table(mixture: Mapping[str, Any], chains: Mapping[str, PageChain], place: str) -> pd.DataFrame:
+    """A mixture over the cycles of its chains: mixture, quantity, revolution, time_s, value.
+
+    Parameters
+    ----------
+    mixture : mapping
+        Of a page: name, key, others, revolutions, particles.
+    chains : mapping of str to PageChain
+    place : str
+        The case's file, for messages.
+
+    Raises
+    ------
+    UserError
+        A state holds more than its capacity.
+    """
+    key = chains[mixture["key"]]
+    cycle, network = len(key.network.cycle), key.network
+    steps = cycle * mixture["revolutions"]
+    contents = {
+        name: chains[name].network.expected(checks.start_of(chains[name]), steps)
+        for name in [mixture["key"], *mixture["others"]]
+    }
+    total = np.sum(list(contents.values()), axis=0)
+    capacity = network.contents
+    try:
+        check_filling(total / capacity, network.names)
+    except UserError as error:
+        raise UserError(f"{place}, mixture {mixture['name']}: {error}") from None
+    times = network.step_s * cycle * np.arange(mixture["revolutions"] + 1)
+    table = mixture_table(
+        contents[mixture["key"]][::cycle], total[::cycle], capacity, mixture["particles"], times
+    )
+    table.insert(0, "mixture", mixture["name"])
+    return table
+
+
+def mixture_metrics(table: pd.DataFrame, limit: float) -> pd.DataFrame:
+    """Numbers of a mixture: its variances over that of the start, their limit, and the best revolution."""
+    name = str(table["mixture"].iloc[0])
+    rows = [
+        Row(f"{row.quantity}_{row.revolution}", row.value, "1")
+        for row in table[table["quantity"].isin(["content_variance", "lacey_index"])].itertuples()
+    ]
+    curve = table[table["quantity"] == "content_variance"].set_index("revolution")["value"]
+    rows.append(Row("content_variance_limit", limit, "1"))
+    rows.append(Row("best_revolutions", float(curve[curve <= curve.min() * (1 + ROUND_OFF)].index[0]), "1"))
+    metrics = pd.DataFrame(rows)
+    metrics.insert(1, "source", name)
+    return metrics.assign(ci_low=np.nan, ci_high=np.nan)
+
+
+def limit_of(chain: PageChain) -> float:
+    """Variance of a closed chain's content in the long run over that of its start [1]."""
+    start, volume = checks.start_of(chain), chain.network.contents
+    filled = [contents / volume for contents in (chain.network.long_run(start), start)]
+    weight = volume / volume.sum()
+    last, first = (float(weight @ (values - weight @ values) ** 2) for values in filled)
+    return last / first

@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""What a network says, as tables: numbers, contents, residence times, pulses, a path, mixtures."""
+"""What a network says, as tables: numbers, contents, residence times, pulses, a path."""
 
-from collections.abc import Iterator, Mapping
-from typing import Any, NamedTuple
+from collections.abc import Iterator
+from typing import NamedTuple
 
 import numpy as np
 import pandas as pd
@@ -10,11 +10,8 @@ from numpy.typing import NDArray
 
 from bedchain.chains.networks import checks
 from bedchain.chains.networks.bubbling_wakes import remaining
-from bedchain.chains.networks.mixer import check_filling
-from bedchain.chains.networks.mixture import mixture_table
 from bedchain.chains.networks.network import REACTED
 from bedchain.chains.networks.page import PageChain
-from bedchain.errors import UserError
 
 Array = NDArray[np.float64]
 # F is followed until this share has left, at most so many steps
@@ -188,67 +185,6 @@ def path_table(chain: PageChain, steps: int, seed: int) -> pd.DataFrame:
     columns = _state_columns(chain).iloc[path].reset_index(drop=True)
     columns.insert(1, "time_s", network.step_s * np.arange(len(path)))
     return columns
-
-
-def mixtures_table(mixture: Mapping[str, Any], chains: Mapping[str, PageChain], place: str) -> pd.DataFrame:
-    """A mixture over the cycles of its chains: mixture, quantity, revolution, time_s, value.
-
-    Parameters
-    ----------
-    mixture : mapping
-        Of a page: name, key, others, revolutions, particles.
-    chains : mapping of str to PageChain
-    place : str
-        The case's file, for messages.
-
-    Raises
-    ------
-    UserError
-        A state holds more than its capacity.
-    """
-    key = chains[mixture["key"]]
-    cycle, network = len(key.network.cycle), key.network
-    steps = cycle * mixture["revolutions"]
-    contents = {
-        name: chains[name].network.expected(checks.start_of(chains[name]), steps)
-        for name in [mixture["key"], *mixture["others"]]
-    }
-    total = np.sum(list(contents.values()), axis=0)
-    capacity = network.contents
-    try:
-        check_filling(total / capacity, network.names)
-    except UserError as error:
-        raise UserError(f"{place}, mixture {mixture['name']}: {error}") from None
-    times = network.step_s * cycle * np.arange(mixture["revolutions"] + 1)
-    table = mixture_table(
-        contents[mixture["key"]][::cycle], total[::cycle], capacity, mixture["particles"], times
-    )
-    table.insert(0, "mixture", mixture["name"])
-    return table
-
-
-def mixture_metrics(table: pd.DataFrame, limit: float) -> pd.DataFrame:
-    """Numbers of a mixture: its variances over that of the start, their limit, and the best revolution."""
-    name = str(table["mixture"].iloc[0])
-    rows = [
-        Row(f"{row.quantity}_{row.revolution}", row.value, "1")
-        for row in table[table["quantity"].isin(["content_variance", "lacey_index"])].itertuples()
-    ]
-    curve = table[table["quantity"] == "content_variance"].set_index("revolution")["value"]
-    rows.append(Row("content_variance_limit", limit, "1"))
-    rows.append(Row("best_revolutions", float(curve[curve <= curve.min() * (1 + ROUND_OFF)].index[0]), "1"))
-    metrics = pd.DataFrame(rows)
-    metrics.insert(1, "source", name)
-    return metrics.assign(ci_low=np.nan, ci_high=np.nan)
-
-
-def limit_of(chain: PageChain) -> float:
-    """Variance of a closed chain's content in the long run over that of its start [1]."""
-    start, volume = checks.start_of(chain), chain.network.contents
-    filled = [contents / volume for contents in (chain.network.long_run(start), start)]
-    weight = volume / volume.sum()
-    last, first = (float(weight @ (values - weight @ values) ** 2) for values in filled)
-    return last / first
 
 
 def _state_columns(chain: PageChain) -> pd.DataFrame:

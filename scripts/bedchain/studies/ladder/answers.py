@@ -1,8 +1,10 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Answers of models about one bed in common terms, and their distance from the simulated bed."""
 
+import json
 from collections.abc import Mapping
-from dataclasses import dataclass, field
+from dataclasses import asdict, dataclass, field, fields
+from pathlib import Path
 from typing import NamedTuple
 
 import numpy as np
@@ -10,6 +12,8 @@ import pandas as pd
 from numpy.typing import NDArray
 
 from bedchain.case.schema import Case
+from bedchain.errors import DataError
+from bedchain.files import write_text
 from bedchain.trajectory.grid import Grid
 
 Array = NDArray[np.float64]
@@ -27,10 +31,12 @@ class Quantity(NamedTuple):
 QUANTITIES = {
     "particle_height": Quantity("mean particle height", "1"),
     "pressure_drop": Quantity("mean pressure drop", "1"),
+    "pressure_frequency": Quantity("pressure frequency", "1"),
     "voidage": Quantity("voidage by height", "1"),
     "density": Quantity("density in cells", "1"),
     "mixing_radial": Quantity("radial mixing", "1"),
     "mixing_axial": Quantity("axial mixing", "1"),
+    "stay_low": Quantity("stay in the lower part", "1"),
     "bubble_diameter": Quantity("bubble diameter", "1"),
     "bubble_velocity": Quantity("bubble rise velocity", "1"),
 }
@@ -47,7 +53,8 @@ class Answer:
     values : mapping of str to array or float
         Of `QUANTITIES` as far as the model says them: mean height [m], pressure drop [Pa], voidage of the
         rows of the case's cells [1], share of the particles in each of these cells [1], mixing curves
-        (n_times, 2) [1] at multiples of `lag_s` from 0, bubble diameter [m] and rise velocity [m/s].
+        (n_times, 2) [1] at multiples of `lag_s` from 0, dominant frequency of the pressure drop [Hz], stay in
+        the lower part (`stays`) [s], bubble diameter [m] and rise velocity [m/s].
     cost_s : float
         Processor time for a simulated second [s].
     learning_s, memory_mb : float
@@ -129,6 +136,8 @@ def ladder_rows(answers: list[Answer], truth: Truth) -> pd.DataFrame:
         for name in QUANTITIES:
             if name not in answer.values or name not in truth.values:
                 continue
+            if np.ndim(answer.values[name]) == 0 and not np.isfinite(answer.values[name]):
+                continue
             said, true, floor = answer.values[name], truth.values[name], truth.floors.get(name, np.nan)
             number = np.ndim(true) == 0
             error = error_of(name, answer, truth)
@@ -147,7 +156,46 @@ def ladder_rows(answers: list[Answer], truth: Truth) -> pd.DataFrame:
     return pd.DataFrame(rows)
 
 
-UNITS = {"particle_height": "m", "pressure_drop": "Pa", "bubble_diameter": "m", "bubble_velocity": "m/s"}
+UNITS = {
+    **{"particle_height": "m", "pressure_drop": "Pa", "pressure_frequency": "Hz", "stay_low": "s"},
+    **{"bubble_diameter": "m", "bubble_velocity": "m/s"},
+}
+
+
+def read_answer(file: Path) -> Answer:
+    """A model that ran elsewhere, such as a cheaper bed: JSON with the names of `Answer`, lists for arrays.
+
+    Raises
+    ------
+    DataError
+        It names no model or cost, or a quantity that the ladder does not know, or a value that is no number.
+    """
+    try:
+        content = json.loads(file.read_text(encoding="utf-8"))
+    except ValueError as error:
+        raise DataError(f"{file} is no JSON: {error}") from None
+    names = {item.name for item in fields(Answer)}
+    if not isinstance(content, dict) or not isinstance(content.get("values", {}), dict):
+        raise DataError(f"{file} holds no model: take the names of Answer, and values by quantity")
+    if missing := {"model", "cost_s", "values"} - content.keys():
+        raise DataError(f"{file} lacks {', '.join(sorted(missing))}")
+    if unknown := [*(content.keys() - names), *(content["values"].keys() - QUANTITIES.keys())]:
+        raise DataError(
+            f"{file}: {', '.join(sorted(unknown))} is known to no ladder: {', '.join(QUANTITIES)}"
+        )
+    try:
+        arrays = {name: np.asarray(value, np.float64) for name, value in content["values"].items()}
+    except (TypeError, ValueError) as error:
+        raise DataError(f"{file}: a value is no number or no even list of numbers ({error})") from None
+    values = {name: value if value.ndim else float(value) for name, value in arrays.items()}
+    return Answer(**content | {"values": values})
+
+
+def write_answer(answer: Answer, file: Path) -> None:
+    """Write what `read_answer` reads."""
+    values = {name: np.asarray(value).tolist() for name, value in answer.values.items()}
+    content = {name: value for name, value in asdict(answer).items() if value == value} | {"values": values}
+    write_text(file, json.dumps(content) + "\n")
 
 
 def of_density(share: Array, grid: Grid, case: Case) -> dict[str, Array | float]:

@@ -11,12 +11,14 @@ from bedchain.case.parameters import weight_per_area
 from bedchain.case.scene import scene_of
 from bedchain.case.schema import Case
 from bedchain.chains import registry
+from bedchain.chains.chain import Chain
 from bedchain.chains.networks.bubbling_wakes import Mechanisms, bubbling_wakes, remaining
 from bedchain.measures.mixing import GROUPS
 from bedchain.meter import forget_peak, peak_memory_mb
 from bedchain.physics.bubbling_bed import BubblingBed, bubbling_bed
 from bedchain.studies.ladder.answers import Answer, Array, Values, of_density
-from bedchain.studies.two_fluid_summary import Summary
+from bedchain.studies.ladder.stays import stay_in_lower_part, stay_starts
+from bedchain.studies.two_fluid_summary import Summary, piece_of, pressure_record
 from bedchain.trajectory.frames import lag_frames
 from bedchain.trajectory.grid import Grid
 from bedchain.trajectory.realisations import Realisation
@@ -77,12 +79,28 @@ def of_chain(
     curves, spent = timed(lambda: chain.mixing(start, lines["split_x_m"], lines["split_z_m"], steps))
     density = regrid(chain.long_run_density(start), setting.grid, shown)
     values = of_density(density, shown, case)
-    values |= by_direction(curves)
+    values |= by_direction(curves) | {"stay_low": stay_of(chain, run, spans, lag, case)}
     cost_s, cells = spent / (steps * setting.lag_s), f"{setting.grid.columns} x {setting.grid.rows} cells"
     return Answer(
         setting.name, values, cost_s, learning_s, peak_memory_mb(), setting.lag_s, True,
         f"{cells}, lag {setting.lag_s:g} s",
     )  # fmt: skip
+
+
+def stay_of(chain: Chain, run: Realisation, spans: tuple[slice, slice], lag: int, case: Case) -> float:
+    """Stay in the lower part of a chain's particles, from the starts of the simulated bed [s].
+
+    Its heights are those of the middles of cells.
+    """
+    heights_m, line_m = chain.grid.centres_m[:, 1], case["mixing"]["split_z_m"]
+    starts, horizon = stay_starts(*spans)
+    rng = np.random.default_rng(case["chain"]["seed"])
+    stays = []
+    for frame in starts[-2:]:
+        paths = chain.paths(run.leading_to(chain.grid, frame, lag), -(-horizon // lag), rng)
+        heights = (heights_m[cells] for cells in paths)
+        stays.append(stay_in_lower_part(heights, lag * run.interval_s, line_m, horizon * run.interval_s))
+    return float(np.mean(stays))
 
 
 def of_two_fluid(summary: Summary, shown: Grid, case: Case) -> Iterable[Answer]:
@@ -94,21 +112,23 @@ def of_two_fluid(summary: Summary, shown: Grid, case: Case) -> Iterable[Answer]:
     window = summary.pressure["time_s"].between(*record["window_s"])
     values["pressure_drop"] = float(summary.pressure.loc[window, "pressure_drop_Pa"].mean())
     for name in ("bubble_diameter_m", "bubble_velocity_m_s"):
-        if np.isfinite(record[name]):
-            values[name.rsplit("_m", 1)[0]] = record[name]
+        values[name.rsplit("_m", 1)[0]] = record[name]
+    spectrum = pressure_record(summary.pressure, tuple(record["window_s"]), piece_of(case))
+    values["pressure_frequency"] = spectrum["pressure_frequency_Hz"]
     lag_s, name = (
         float(np.diff(summary.mixing["time_s"].iloc[:2])[0]),
         f"two-fluid, {1000 * record['cell_m']:g} mm",
     )
     ran = f"{record['window_s'][0]:g} to {record['window_s'][1]:g} s"
-    yield Answer(name, values | curves_of(summary, "frames"), record["cpu_s_per_s"], lag_s=lag_s, note=ran)
+    cost = {"cost_s": record["cpu_s_per_s"], "memory_mb": record.get("memory_mb", np.nan), "lag_s": lag_s}
+    yield Answer(name, values | curves_of(summary, "frames"), **cost, note=ran)
     mean = {
         "density": values["density"],
         "voidage": values["voidage"],
         "particle_height": values["particle_height"],
     }
     yield Answer(
-        f"{name}, mean flow", mean | curves_of(summary, "mean_flow"), record["cpu_s_per_s"], lag_s=lag_s,
+        f"{name}, mean flow", mean | curves_of(summary, "mean_flow"), **cost,
         note="a chain of the mean flow; it costs the run",
     )  # fmt: skip
 

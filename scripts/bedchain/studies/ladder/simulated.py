@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """The simulated bed as the truth of the ladder, with floors from parts of its run and from its repeats."""
 
+from itertools import pairwise
 from pathlib import Path
 
 import numpy as np
@@ -10,8 +11,11 @@ from numpy.typing import NDArray
 from bedchain.case.schema import Case
 from bedchain.measures.bubbles import followed_bubbles, middle_of_bed, voidage_maps
 from bedchain.measures.mixing import GROUPS
+from bedchain.measures.spectrum import dominant_frequency
 from bedchain.measures.voidage import Slab
 from bedchain.studies.ladder.answers import Answer, Array, Truth, Values, distance, ladder_rows, of_density
+from bedchain.studies.ladder.stays import stay_in_lower_part, stay_starts
+from bedchain.studies.two_fluid_summary import piece_of
 from bedchain.trajectory.grid import Grid
 from bedchain.trajectory.realisations import Realisation
 from bedchain.uncertainty.deviations import SIDES
@@ -31,6 +35,8 @@ def values_of(run: Realisation, frames: slice, series: pd.DataFrame, grid: Grid,
     start_s, end_s = run.times_s[frames][[0, -1]]
     within = series[series["time_s"].between(start_s, end_s)]
     values["pressure_drop"] = float(within["pressure_drop_Pa"].mean())
+    peak = dominant_frequency(within["time_s"], within["pressure_drop_Pa"], piece_of(case))
+    values["pressure_frequency"] = peak.frequency_hz
     cell_m, size = case["gas"]["cell_size_m"], (bed["height_m"], bed["width_m"])
     maps = voidage_maps(positions, size, cell_m, Slab(bed["thickness_m"], case["particles"]["diameter_m"]))
     table, risen = followed_bubbles(maps, cell_m, run.interval_s, bed["width_m"])
@@ -64,16 +70,17 @@ def truth_of(
     """
     values = dict(values_of(run, spans[1], series, grid, case))
     edges = np.linspace(spans[0].start, spans[1].stop, PARTS + 1).astype(int)
-    parts = [
-        values_of(run, slice(start, stop), series, grid, case)
-        for start, stop in zip(edges[:-1], edges[1:], strict=True)
-    ]
+    parts = [values_of(run, slice(start, stop), series, grid, case) for start, stop in pairwise(edges)]
     floors = {}
     for name in values:
         mean = np.mean([np.asarray(part[name]) for part in parts], axis=0)
         spread = [distance(name, part[name], mean) for part in parts]
         # a window is half of the parts: of its mean the variance is that of a part over PARTS / 2
         floors[name] = float(np.sqrt(np.sum(np.square(spread)) / (PARTS - 1) / (PARTS / 2)))
+    # a peak is not known better than by half of the distance of two frequencies
+    half = 1 / piece_of(case) / 2 / float(values["pressure_frequency"])
+    floors["pressure_frequency"] = max(floors["pressure_frequency"], half)
+    values["stay_low"], floors["stay_low"] = stays_of(run, spans, case)
     for direction in ("radial", "axial"):
         of_direction = curves[..., SIDES[direction]]
         values[f"mixing_{direction}"] = of_direction.mean(axis=0)
@@ -82,10 +89,23 @@ def truth_of(
     return Truth(values, floors, run.interval_s)
 
 
-def dem_rows(truth: Truth, cost_s: float) -> pd.DataFrame:
+def stays_of(run: Realisation, spans: tuple[slice, slice], case: Case) -> tuple[float, float]:
+    """Stay in the lower part over the comparison [s], and what such a mean differs by [1]."""
+    starts, horizon = stay_starts(*spans)
+    pieces = (run.values[start : start + horizon + 1, 1] for start in starts)
+    line_m, interval_s = case["mixing"]["split_z_m"], run.interval_s
+    stays = [stay_in_lower_part(piece, interval_s, line_m, horizon * interval_s) for piece in pieces]
+    return float(np.mean(stays[-2:])), float(np.std(stays, ddof=1) / np.mean(stays) / np.sqrt(2))
+
+
+def dem_rows(truth: Truth, cost_s: float, memory_mb: float = np.nan) -> pd.DataFrame:
     """Rows of the simulation itself: another realisation has an error of a floor in each quantity."""
     values = {name: true for name, true in truth.values.items() if name in truth.floors}
-    rows = ladder_rows([Answer("bedFoam", values, cost_s, lag_s=truth.interval_s, paths=True)], truth)
+    answer = Answer(
+        "bedFoam", values, cost_s, memory_mb=memory_mb, lag_s=truth.interval_s, paths=True,
+        note="memory as estimated for a run",
+    )  # fmt: skip
+    rows = ladder_rows([answer], truth)
     of_floor = rows["noise_floor_1"].notna()
     rows.loc[of_floor, "error_1"], rows.loc[of_floor, "error_floors"] = rows["noise_floor_1"], 1.0
     return rows

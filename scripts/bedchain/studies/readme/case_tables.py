@@ -13,6 +13,7 @@ import pandas as pd
 
 from bedchain.comparison.claims import cost_metrics
 from bedchain.measures.mixing import GROUPS
+from bedchain.studies.ladder.answers import QUANTITIES
 
 PARTS = [name for _, name in GROUPS]
 MONTE_CARLO = "_monte_carlo"
@@ -207,6 +208,23 @@ def by_cell_and_lag(values: "pd.Series[Any]") -> pd.DataFrame:
     wide = wide.map(lambda value: f"{value:.2f}" if np.isfinite(value) else "")
     wide.insert(0, "cell", [f"{100 * size:.3g} cm" for size in wide.index])
     return wide.reset_index(drop=True)
+
+
+def ladder(results: Path) -> pd.DataFrame:
+    """Every model of the ladder, cheapest first: its cost, its memory and its errors in noise floors."""
+    table = pd.read_csv(results / "ladder.csv")
+    models = table.drop_duplicates("model").set_index("model")
+    errors = table.pivot_table(index="model", columns="quantity", values="error_floors")
+    rows = pd.DataFrame(
+        {
+            "s of a core a simulated s": models["cost_s_per_s"].map(number),
+            "MB": models["memory_mb"].map(number),
+        }
+    )
+    for name, quantity in QUANTITIES.items():
+        if name in errors:
+            rows[quantity.title] = errors[name].reindex(models.index).map(number)
+    return rows.loc[models["cost_s_per_s"].sort_values().index].reset_index()
 
 
 def _listed(rows: dict[str, str]) -> pd.DataFrame:

@@ -4,7 +4,17 @@
 import numpy as np
 import pytest
 
-from bedchain.chains.networks.mixture import composition, mixture_measures, mixture_table
+from bedchain.chains.networks.mixer import loaded, static_mixer
+from bedchain.chains.networks.mixture import (
+    composition,
+    limit_of,
+    mixture_measures,
+    mixture_metrics,
+    mixture_table,
+    mixtures_table,
+)
+from bedchain.chains.networks.page import PageChain
+from bedchain.errors import UserError
 
 
 def test_separated_and_even_mixtures():
@@ -25,3 +35,30 @@ def test_variances_of_a_table_are_over_those_of_the_start():
     table = mixture_table(key, np.ones((2, 2)), np.ones(2), 1000, np.array([0.0, 2.0]))
     curve = table[table["quantity"] == "content_variance"]
     assert curve["value"].tolist() == [1, 0.25] and curve["time_s"].tolist() == [0, 2]
+
+
+@pytest.fixture(scope="module")
+def mixers():
+    networks = [static_mixer(10, 1, 10, 0.35, 0.25, 0.0), static_mixer(10, 1, 10, 0.3, 0.3, 0.0)]
+    starts = [loaded(10, 1, "top", 0.5), loaded(10, 1, "bottom", 0.5)]
+    return {
+        name: PageChain(name, *pair, {})
+        for name, pair in zip("ab", zip(networks, starts, strict=True), strict=True)
+    }
+
+
+def test_mixture_has_its_best_revolution_below_the_limit(mixers):
+    mixture = {"name": "m", "key": "a", "others": ["b"], "revolutions": 8, "particles": 100.0}
+    table = mixtures_table(mixture, mixers, "x")
+    limit = limit_of(mixers["a"])
+    numbers = mixture_metrics(table, limit).set_index("quantity")["value"]
+    assert numbers["best_revolutions"] == 5 and numbers["content_variance_5"] < limit == pytest.approx(
+        0.029252, abs=1e-6
+    )
+
+
+def test_an_overfull_mixture_names_file_and_mixture(mixers):
+    full = {name: chain._replace(start=2 * chain.start) for name, chain in mixers.items()}
+    mixture = {"name": "m", "key": "a", "others": ["b"], "revolutions": 8, "particles": 100.0}
+    with pytest.raises(UserError, match="x, mixture m: column 1 row . holds"):
+        mixtures_table(mixture, full, "x")

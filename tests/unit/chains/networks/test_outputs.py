@@ -8,7 +8,6 @@ from bedchain.chains.networks import outputs
 from bedchain.chains.networks.mixer import loaded, static_mixer
 from bedchain.chains.networks.page import PageChain
 from bedchain.chains.networks.riser import Exchange, riser_steps
-from bedchain.errors import UserError
 
 
 @pytest.fixture(scope="module")
@@ -49,20 +48,3 @@ def test_a_path_ends_where_the_particle_leaves(riser):
     path = outputs.path_table(riser, 60, 1)
     assert path["state"].iloc[0] == "core 1" and path["state"].iloc[-1] == "core 3"
     assert len(path) == pytest.approx(4.2, abs=1.5)
-
-
-def test_mixture_has_its_best_revolution_below_the_limit(mixers):
-    mixture = {"name": "m", "key": "a", "others": ["b"], "revolutions": 8, "particles": 100.0}
-    table = outputs.mixtures_table(mixture, mixers, "x")
-    limit = outputs.limit_of(mixers["a"])
-    numbers = outputs.mixture_metrics(table, limit).set_index("quantity")["value"]
-    assert numbers["best_revolutions"] == 5 and numbers["content_variance_5"] < limit == pytest.approx(
-        0.029252, abs=1e-6
-    )
-
-
-def test_an_overfull_mixture_names_file_and_mixture(mixers):
-    full = {name: chain._replace(start=2 * chain.start) for name, chain in mixers.items()}
-    mixture = {"name": "m", "key": "a", "others": ["b"], "revolutions": 8, "particles": 100.0}
-    with pytest.raises(UserError, match="x, mixture m: column 1 row . holds"):
-        outputs.mixtures_table(mixture, full, "x")

@@ -5,7 +5,17 @@ import numpy as np
 import pytest
 
 from bedchain.case.load import load_case
-from bedchain.studies.ladder.answers import Answer, Truth, distance, error_of, ladder_rows, of_density
+from bedchain.errors import DataError
+from bedchain.studies.ladder.answers import (
+    Answer,
+    Truth,
+    distance,
+    error_of,
+    ladder_rows,
+    of_density,
+    read_answer,
+    write_answer,
+)
 from bedchain.trajectory.grid import Grid
 from made import ROOT
 
@@ -42,3 +52,32 @@ def test_height_and_voidage_of_an_even_density():
     assert values["particle_height"] == pytest.approx(0.1)
     solids = 9000 * np.pi / 6 * 1e-9 / (0.1 * 1e-3 * 0.2)
     np.testing.assert_allclose(values["voidage"], [1 - solids, 1 - solids, 1, 1])
+
+
+def test_a_model_that_ran_elsewhere_is_read_as_written(tmp_path):
+    curves = np.array([[1.0, 1.0], [0.9, 0.8]])
+    answer = Answer(
+        "parcels", {"particle_height": 0.2, "mixing_axial": curves}, 12.5, lag_s=0.1, note="8 in 1"
+    )
+    write_answer(answer, tmp_path / "parcels.json")
+    again = read_answer(tmp_path / "parcels.json")
+    np.testing.assert_array_equal(again.values["mixing_axial"], curves)
+    assert (again.model, again.cost_s, again.lag_s, again.note) == ("parcels", 12.5, 0.1, "8 in 1")
+    assert np.isnan(again.learning_s) and again.values["particle_height"] == 0.2
+
+
+@pytest.mark.parametrize(
+    ("text", "message"),
+    [
+        ('{"model": "parcels", "values": {}}', "lacks cost_s"),
+        ('{"model": "p", "cost_s": 1, "values": {"height": 1}}', "height is known to no ladder"),
+        ('{"model": "p", "cost_s": 1, "values": {"voidage": [1, [2]]}}', "no number or no even list"),
+        ('{"model": "p", "cost_s": 1, "colour": 2, "values": {}}', "colour is known to no ladder"),
+        ("[1", "is no JSON"),
+    ],
+)
+def test_a_damaged_model_is_refused(tmp_path, text, message):
+    file = tmp_path / "parcels.json"
+    file.write_text(text)
+    with pytest.raises(DataError, match=message):
+        read_answer(file)

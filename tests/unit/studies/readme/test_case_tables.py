@@ -161,3 +161,16 @@ def test_claims_keep_their_reasons(tmp_path: Path) -> None:
         "yes",
         "mixed",
     ]
+
+
+def test_models_of_the_ladder_are_cheapest_first_with_blanks_for_what_they_cannot_say(tmp_path):
+    rows = [
+        ("bedFoam", "pressure_drop", 1.0, 400.0, 300.0),
+        ("static", "mixing_axial", 0.8, 0.001, 120.0),
+        ("static", "single_paths", np.nan, 0.001, 120.0),
+    ]
+    columns = ["model", "quantity", "error_floors", "cost_s_per_s", "memory_mb"]
+    pd.DataFrame(rows, columns=columns).to_csv(tmp_path / "ladder.csv", index=False)
+    table = case_tables.ladder(tmp_path)
+    assert table["model"].tolist() == ["static", "bedFoam"] and table["MB"].tolist() == ["120", "300"]
+    assert table["axial mixing"].tolist() == ["0.8", ""] and table["mean pressure drop"].tolist() == ["", "1"]
