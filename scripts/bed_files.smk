@@ -2,8 +2,10 @@
 # Names and files of a bed of particles: what its rules share, and what a run of it makes.
 from bedchain.case.cell_checks import not_flat
 from bedchain.case.chosen import is_auto
+from bedchain.case.parcels import parcel_case
 from bedchain.rule_files import source_files
 
+SIMULATED = parcel_case(CASE)  # with parcels in place of particles, where the case has them
 MODELS = CASE["chain"]["models"]
 CHOICE = f"{RESULTS}/choice.csv"
 SETTLED = {"choice": CHOICE} if is_auto(CASE) else {}  # input of the rules that need the lag or the cells

@@ -22,7 +22,7 @@ rule choose_chain:
     conda:
         "../envs/python.yaml"
     params:
-        **pick(CASE, "learning", "mixing", "particles.diameter_m"),
+        **pick(SIMULATED, "learning", "mixing", "particles.diameter_m"),
     script:
         "choose_chain.py"
 
@@ -41,7 +41,7 @@ rule assign_cells:
     conda:
         "../envs/python.yaml"
     params:
-        **pick(CASE, "cells", "particles.diameter_m", "bed.thickness_m"),
+        **pick(SIMULATED, "cells", "particles.diameter_m", "bed.thickness_m"),
         outside=CASE.get("outside", "refuse"),
     script:
         "assign_cells.py"
@@ -112,7 +112,7 @@ rule compare_mixing:
         **pick(CASE, "comparison.start_s", "comparison.end_s", "mixing", "chain.models"),
         **pick(CASE, "figures.batch_height_m"),
         averaged={"start_s": CASE["learning"]["start_s"], "end_s": CASE["comparison"]["end_s"]},
-        weight_Pa=weight_per_area(CASE),
+        weight_Pa=weight_per_area(SIMULATED),
     script:
         "compare_mixing.py"
 
@@ -277,7 +277,7 @@ rule make_film:
         "../envs/python.yaml"
     params:
         **pick(CASE, "comparison.start_s", "comparison.end_s", "mixing.split_x_m", "chain.seed"),
-        **pick(CASE, "particles.diameter_m", "bed.thickness_m", "gas.cell_size_m"),
+        **pick(SIMULATED, "particles.diameter_m", "bed.thickness_m", "gas.cell_size_m"),
         colours=[CASE["figures"][f"{half}_colour"] for half in ["left", "right"]],
     script:
         "make_film.py"

@@ -13,7 +13,7 @@ FIGURE_RULES = {
         "name": "fig1_cells",
         "input": {**TRAJECTORY, "cells": CELLS},
         "params": {
-            **pick(CASE, "particles.diameter_m"),
+            **pick(SIMULATED, "particles.diameter_m"),
             "time_s": CASE["comparison"]["start_s"],
             "colour": CASE["figures"]["cells_colour"],
         },
@@ -59,7 +59,7 @@ FIGURE_RULES = {
         "name": "snapshot",
         "input": {**TRAJECTORY, "dem": RUN["dem"]},
         "params": {
-            **pick(CASE, "particles.diameter_m"),
+            **pick(SIMULATED, "particles.diameter_m"),
             "time_s": CASE["comparison"]["start_s"],
             "colour_map": CASE["figures"]["snapshot_colour_map"],
         },
@@ -92,7 +92,7 @@ FIGURE_RULES = {
         "input": {**TRAJECTORY, **SETTLED, "bed_series": RUN["bed_series"]},
         "output": {"stationarity": f"{RESULTS}/stationarity.csv"},
         "params": {
-            **pick(CASE, "mixing", "bed.thickness_m", "particles.diameter_m"),
+            **pick(SIMULATED, "mixing", "bed.thickness_m", "particles.diameter_m"),
             "start_s": CASE["learning"]["start_s"],
             "end_s": CASE["comparison"]["end_s"],
             "row_m": settled(CASE, lambda case: case["bed"]["height_m"] / case["cells"]["rows"]),

@@ -7,6 +7,7 @@ import numpy as np
 import pandas as pd
 from matplotlib import pyplot as plt
 
+from bedchain.case.parcels import parcel_case
 from bedchain.case.scene import scene_of
 from bedchain.case.schema import Case
 from bedchain.figures.style import DOUBLE_COLUMN_IN, FigureFiles, figure_style, footnote
@@ -59,7 +60,8 @@ def plot_bubbles(
     frames = window.frames(np.array(described["times_s"]))
     cell_m, interval_s = case["gas"]["cell_size_m"], described["frame_interval_s"]
     size = described["height_m"], described["width_m"]
-    slab = Slab(case["bed"]["thickness_m"], case["particles"]["diameter_m"])
+    moved = parcel_case(case)
+    slab = Slab(moved["bed"]["thickness_m"], moved["particles"]["diameter_m"])
     maps = np.array([*voidage_maps(store[frames], size, cell_m, slab)])
     table, risen = followed_bubbles(maps, cell_m, interval_s, size[1])
     profile = maps.mean(axis=(0, 2))

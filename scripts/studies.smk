@@ -157,7 +157,7 @@ rule validate_bed:
     conda:
         "../envs/python.yaml"
     params:
-        **pick(CASE, "bed.width_m", "bed.thickness_m", "particles.diameter_m"),
+        **pick(SIMULATED, "bed.width_m", "bed.thickness_m", "particles.diameter_m"),
         **pick(CASE, "figures.resolution_dpi"),
         start_s=CASE["learning"]["start_s"],
         end_s=CASE["comparison"]["end_s"],
@@ -193,7 +193,7 @@ rule score_models:
         "../envs/python.yaml"
     params:
         **pick(CASE, "cells", "chain.lag_s", "chain.estimator", "chain.seed", "mixing"),
-        **pick(CASE, "particles.diameter_m", "figures.batch_height_m", "figures.moments_s"),
+        **pick(SIMULATED, "particles.diameter_m", "figures.batch_height_m", "figures.moments_s"),
         outside=CASE.get("outside", "refuse"),
         learning=CASE["learning"],
         comparison=pick(CASE, "comparison.start_s", "comparison.end_s"),

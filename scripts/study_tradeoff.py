@@ -16,6 +16,7 @@ import pandas as pd
 
 from bedchain.case.chosen import with_choice
 from bedchain.case.load import load_case
+from bedchain.case.parcels import parcel_case
 from bedchain.case.schema import Case
 from bedchain.dem.repeats import repeat_folder
 from bedchain.errors import UserError
@@ -108,7 +109,7 @@ def opened(case: Case, folder: Path) -> tuple[measured_chains.Bench, list[Path]]
     length = starts[0].length
     models = tuple(case["chain"]["models"])
     own = CaseChain(grid, lag, case["chain"]["estimator"], learning, length, run.interval_s,
-              case["particles"]["diameter_m"], splits, models)  # fmt: skip
+              parcel_case(case)["particles"]["diameter_m"], splits, models)  # fmt: skip
     task = Task(grid, splits, own.estimator, spacing, length)
     folds, seed = measured_chains.folds(run, learning, task), case["chain"]["seed"]
     return measured_chains.Bench(run, own, task, reference, folds, tuple(starts), seed), [

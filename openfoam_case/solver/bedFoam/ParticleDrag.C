@@ -51,8 +51,8 @@ void bedFoam::ParticleDrag::update(
             sqr(around[0] - velocity[i][0]) + sqr(around[1] - velocity[i][1])
             + sqr(around[2] - velocity[i][2])
         );
-        const double explicitDrag =
-            law_({around[3], properties_.diameter, slip, properties_.gasDensity, properties_.gasViscosity});
+        const double explicitDrag = properties_.grains
+            * law_({around[3], properties_.grain, slip, properties_.gasDensity, properties_.gasViscosity});
         drags_[i].coefficient = explicitDrag / (1 + properties_.interval * explicitDrag / properties_.mass);
         for (int d = 0; d < 3; ++d) drags_[i].undragged[d] = 2 * velocity[i][d] - dragged[i][d];
     }

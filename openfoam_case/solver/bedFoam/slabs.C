@@ -42,7 +42,7 @@ bedFoam::SlabGrid bedFoam::ownSlab(const dictionary& parameters)
     const int own = cells[0] / ranks;
     SlabGrid grid({own, cells[1], cells[2]}, {rank * own * size[0], low, 0}, size, rank, ranks);
     grid.setSmoothingLength(
-        parameters.get<scalar>("smoothing_diameters") * parameters.get<scalar>("diameter")
+        parameters.get<scalar>("smoothing_diameters") * parameters.get<scalar>("particle_diameter")
     );
     return grid;
 }

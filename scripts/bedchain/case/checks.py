@@ -11,6 +11,7 @@ from bedchain.case import (  # noqa: F401
     gas_checks,
     mark_checks,
     network_checks,
+    parcel_checks,
     scene_checks,
     size_checks,
     stage_checks,

@@ -15,6 +15,7 @@ from bedchain.case.checks import physical_problems
 from bedchain.case.chosen import AUTO
 from bedchain.case.frame_checks import FRAMES, simulation_problems, with_measured
 from bedchain.case.network_checks import NETWORK, bed_problems, network_schema
+from bedchain.case.parcel_checks import narrow_cells
 from bedchain.case.scene_checks import checked_keys
 from bedchain.case.schema import SCHEMA_FILE, Case, Schema, case_value, load_schema, schema_keys
 from bedchain.case.strict_yaml import Lines, read_yaml
@@ -79,6 +80,8 @@ def load_case(
     problems += physical_problems(checked_keys(case), broken, lines)
     if problems:
         raise CaseError(file, sorted(problems, key=lambda problem: (problem.line or 0, problem.key)))
+    if hint := narrow_cells(case):
+        give_hint(f"{file}: {hint}")
     return case
 
 

@@ -4,6 +4,7 @@
 import math
 from dataclasses import dataclass
 
+from bedchain.case.parcels import parcel_case, parcel_diameters, particles_per_parcel
 from bedchain.case.schema import Case, Schema, case_value, schema_keys
 from bedchain.physics.constants import GRAVITY_M_S2
 from bedchain.physics.fluidization import ergun_velocity
@@ -58,14 +59,32 @@ def solver_parameters(case: Case, schema: Schema) -> list[Parameter]:
     Returns
     -------
     list of Parameter
-        Keys in the order of the schema, then the derived ones.
+        Keys in the order of the schema, then the derived ones; those of parcels where the case has them.
     """
+    simulated = parcel_case(case)
     given = [
-        Parameter(part["x-variable"], case_value(case, key), part["x-unit"], key)
+        Parameter(
+            part["x-variable"], case_value(simulated, key), part["x-unit"], _source(key, case, simulated)
+        )
         for key, part in schema_keys(schema).items()
         if "x-variable" in part
     ]
-    return given + derived_parameters(case)
+    grain = Parameter(
+        "particle_diameter", case["particles"]["diameter_m"], "m", "particles.diameter_m, which drag goes by"
+    )
+    counted = Parameter(
+        "particles_per_parcel",
+        particles_per_parcel(case),
+        "1",
+        "l^2 in a bed of one layer, l^3 in a thick one",
+    )
+    return [*given, *derived_parameters(simulated), grain, counted]
+
+
+def _source(key: str, case: Case, simulated: Case) -> str:
+    """The key of a value, with the parcels that changed it."""
+    same = case_value(case, key) == case_value(simulated, key)
+    return key if same else f"{key}, for parcels of {parcel_diameters(case):g} diameters"
 
 
 def derived_parameters(case: Case) -> list[Parameter]:

@@ -51,7 +51,9 @@ def two_fluid_case(case: Case, cell_m: float | None = None) -> Case:
     step_s = case["time"]["gas_step_s"] * cell_m / gas["cell_size_m"]
     frame_s = case["time"]["frame_interval_s"]
     step_s = frame_s / max(round(frame_s / step_s), 1)
-    return case | {"gas": gas | {"cell_size_m": cell_m}, "time": case["time"] | {"gas_step_s": step_s}}
+    particles = case["particles"] | {"parcel_diameters": 1.0}
+    changed = {"gas": gas | {"cell_size_m": cell_m}, "time": case["time"] | {"gas_step_s": step_s}}
+    return case | changed | {"particles": particles}
 
 
 def is_two_fluid(case: dict[str, Any]) -> bool:

@@ -7,6 +7,7 @@ from pathlib import Path
 
 from tqdm import tqdm
 
+from bedchain.case.parcels import parcel_case
 from bedchain.case.schema import Case
 from bedchain.errors import UserError
 from bedchain.physics.whole_numbers import ratio
@@ -28,6 +29,7 @@ def run_bytes(case: Case) -> int:
     case : dict
         A checked case, of `case.load.load_case`.
     """
+    case = parcel_case(case)
     time, bed = case["time"], case["bed"]
     window_s = case["comparison"]["end_s"] - case["comparison"]["start_s"]
     spans_s = [time["end_s"], *[window_s] * case["comparison"]["repeats"]]

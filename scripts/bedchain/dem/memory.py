@@ -5,6 +5,7 @@ from pathlib import Path
 
 from tqdm import tqdm
 
+from bedchain.case.parcels import parcel_case
 from bedchain.case.schema import Case
 from bedchain.errors import UserError
 from bedchain.meter import physical_memory_bytes
@@ -32,6 +33,7 @@ def memory_needs(case: Case) -> dict[str, float]:
     dict of str to float
         Bytes by the name of the part.
     """
+    case = parcel_case(case)
     bed, cell, number = case["bed"], case["gas"]["cell_size_m"], case["particles"]["number"]
     deep = max(1.0, bed["thickness_m"] / cell) if bed["layers"] == "many" else 1.0
     gas_cells = bed["width_m"] * bed["height_m"] / cell**2 * deep if case["gas"]["model"] != "none" else 0.0

@@ -268,6 +268,7 @@ def manifest(run: SegmentedRun, segments: list[Segment]) -> dict[str, object]:
         "dem_step_s": step_s,
         "frame_interval_s": frame_steps * step_s,
         "number": int(parameters["number"]),
+        "particles_per_parcel": float(parameters.get("particles_per_parcel", 1.0)),
         "columns": frame_columns(parameters),
         "frames": frames,
         "segments": [

@@ -75,7 +75,7 @@ def write_inputs(setup: Setup) -> dict[str, Any]:
     fresh_folder(setup.folder)
     file = setup.folder / "case.yaml"
     file.write_text(yaml.safe_dump(case_of(setup), sort_keys=False), encoding="utf-8")
-    numbers = {"frozen": 0} | setup.numbers
+    numbers = {"frozen": 0, "roof": 0} | setup.numbers
     parameters = [
         replace(item, value=numbers.pop(item.name), source="the check") if item.name in numbers else item
         for item in solver_parameters(load_case(file), load_schema())

@@ -161,6 +161,7 @@ def trajectory_metadata(
         "frame_interval_s": manifest["frame_interval_s"],
         "width_m": width_m,
         "height_m": height_m,
+        **{key: manifest[key] for key in ("particles_per_parcel",) if manifest.get(key, 1) != 1},
     }
 
 

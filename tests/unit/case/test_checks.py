@@ -27,6 +27,8 @@ NAMES = {
     "moments_are_frames", "particles_carry_the_bed", "particles_fit", "particles_fit_into_the_drum",
     "ranks_share_gas_evenly", "repeats_start_at_a_segment", "seed_is_prime", "splits_lie_in_bed",
     "step_is_stable", "steps_nest", "windows_lie_in_time",
+    "cells_hold_parcels", "gas_cells_hold_parcels", "parcels_are_under_gas", "parcels_can_lose_the_energy",
+    "parcels_fit",
 }  # fmt: skip
 LIST_CHECKS = (
     "from bedchain.case.check_registry import CHECKS; print(*[check.__name__ for _, check in CHECKS])"

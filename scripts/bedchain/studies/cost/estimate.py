@@ -7,6 +7,7 @@ from dataclasses import replace
 
 import pandas as pd
 
+from bedchain.case.parcels import parcel_case
 from bedchain.case.presets import Preset, with_preset
 from bedchain.case.schema import Case
 from bedchain.dem import disk
@@ -43,6 +44,7 @@ def predicted(
     DataFrame
         Indexed by stage: wall_s, memory_mb, disk_mb, error_floors; NaN where unknown.
     """
+    case = parcel_case(case)
     rows = {} if archived else solver_stages(case, speed)
     frames, number = _frames(case, case["time"]["end_s"]), case["particles"]["number"]
     repeats = case["comparison"]["repeats"]

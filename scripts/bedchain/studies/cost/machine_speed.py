@@ -17,6 +17,7 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from bedchain.case.parcels import parcel_case
 from bedchain.case.schema import Case
 from bedchain.dem.segments import read_parameters
 from bedchain.files import path_inside
@@ -107,7 +108,8 @@ class Speed:
 
 
 def bed_of(case: Case) -> BedSize:
-    """Size of the bed of a checked case."""
+    """Size of the bed of a checked case, in the parcels that are simulated."""
+    case = parcel_case(case)
     bed, time_, cell = case["bed"], case["time"], case["gas"]["cell_size_m"]
     deep = max(1, round(bed["thickness_m"] / cell)) if bed["layers"] == "many" else 1
     cells = int(ratio(bed["width_m"], cell) * ratio(bed["height_m"], cell)) * deep

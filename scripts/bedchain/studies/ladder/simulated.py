@@ -8,6 +8,7 @@ import numpy as np
 import pandas as pd
 from numpy.typing import NDArray
 
+from bedchain.case.parcels import parcel_case
 from bedchain.case.schema import Case
 from bedchain.measures.bubbles import followed_bubbles, middle_of_bed, voidage_maps
 from bedchain.measures.mixing import GROUPS
@@ -38,7 +39,9 @@ def values_of(run: Realisation, frames: slice, series: pd.DataFrame, grid: Grid,
     peak = dominant_frequency(within["time_s"], within["pressure_drop_Pa"], piece_of(case))
     values["pressure_frequency"] = peak.frequency_hz
     cell_m, size = case["gas"]["cell_size_m"], (bed["height_m"], bed["width_m"])
-    maps = voidage_maps(positions, size, cell_m, Slab(bed["thickness_m"], case["particles"]["diameter_m"]))
+    moved = parcel_case(case)
+    slab = Slab(moved["bed"]["thickness_m"], moved["particles"]["diameter_m"])
+    maps = voidage_maps(positions, size, cell_m, slab)
     table, risen = followed_bubbles(maps, cell_m, run.interval_s, bed["width_m"])
     bubbles = middle_of_bed(table, risen, 2 * float(values["particle_height"]))
     return values | {name.rsplit("_m", 1)[0]: value for name, value in bubbles.items()}

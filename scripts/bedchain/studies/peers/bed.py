@@ -123,11 +123,13 @@ def fluidized_bed(case_file: Path, folder: Path, solver: Path, start_s: float) -
     Raises
     ------
     UserError
-        The bed is more than one layer thick.
+        The bed is more than one layer thick, or of parcels.
     """
     bed = PeerBed(
         case_file.parent.name, solver_parameters(load_case(case_file), load_schema()), np.empty((0, 5))
     )
+    if bed.value("particles_per_parcel") != 1:
+        raise UserError(f"{case_file}: particles.parcel_diameters: the other codes know no parcels; take 1")
     if bed.value("depth_walls"):
         raise UserError(f"{case_file}: bed.layers: the comparison runs beds of one layer; take another case")
     folder.mkdir(parents=True, exist_ok=True)

@@ -8,10 +8,12 @@ from fractions import Fraction
 from typing import Any
 
 from bedchain.case.bed_checks import CARRYING_KEYS, particles_carry_the_bed
+from bedchain.case.checks import physical_problems
+from bedchain.case.scene_checks import checked_keys
 from bedchain.case.schema import Case, case_value, load_schema
 from bedchain.case.variants import Variant
 from bedchain.errors import UserError, report_user_errors
-from bedchain.physics.whole_numbers import is_prime
+from bedchain.physics.whole_numbers import dividing_step, is_prime
 
 # Young's modulus over the case's; the step goes with its root, so that its share of the Rayleigh time stays.
 # Particles too soft to carry the bed are left out.
@@ -27,12 +29,11 @@ FRICTIONS = (0.0, 0.3)
 RESTITUTIONS = (0.8, 0.97)
 # an arm of a twentieth of the radius, from which on the audit keeps rolling resistance
 ROLLING_FRICTIONS = (0.05,)
+# diameters of a parcel; those that do not go with the case are left out
+PARCELS = (2.0, 3.0, 4.0)
 PRESSURE_TOLERANCES = (1e-5, 1e-9)
 SEED_SPACING = 1000
 SEEDS = 2
-# steps are cut by products of these alone, so that they are decimal numbers with few digits
-PRIMES = (2, 5)
-ROUND_OFF = 1e-9
 OPTIONS = ("dem",)
 REALISATION = "realisation"  # axis of the variants that differ only in their random start
 
@@ -125,14 +126,6 @@ def variants_or_exit(option: object, case: Case, archived: bool) -> list[str]:
         return wanted_variants(option, case, archived)
 
 
-def dividing_step(whole_s: float, wanted_s: float) -> float:
-    """The longest step up to about `wanted_s` that divides a time, with few decimal digits [s]."""
-    number = math.ceil(whole_s / wanted_s * (1 - ROUND_OFF))
-    while _without(PRIMES, number) != 1:
-        number += 1
-    return float(Fraction(repr(whole_s)) / number)
-
-
 def dividing_cell(case: Case, factor: float) -> float:
     """Size of square gas cells that divide the bed, as near as possible to `factor` times the case's [m]."""
     width, height = (Fraction(repr(case["bed"][name])) for name in ("width_m", "height_m"))
@@ -171,6 +164,10 @@ def _particles(case: Case) -> Iterator[tuple[str, str, dict[str, Any]]]:
 
 def _gas(case: Case) -> Iterator[tuple[str, str, dict[str, Any]]]:
     time = case["time"]
+    for size in PARCELS:
+        changed = case | {"particles": case["particles"] | {"parcel_diameters": size}}
+        if not physical_problems(checked_keys(changed), set(), {}):
+            yield "parcels", f"parcels_{size:g}", {"particles.parcel_diameters": size}
     for factor in GAS_STEPS:
         step = dividing_step(time["frame_interval_s"], time["gas_step_s"] * factor)
         yield "gas step", f"gas_step_{factor:g}", _with_gas_step(case, step)
@@ -198,14 +195,6 @@ def _weight_of(case: Case) -> list[float]:
     return [case_value(case, key) for key in CARRYING_KEYS]
 
 
-def _without(primes: tuple[int, ...], number: int) -> int:
-    """A number divided by all its factors among some primes."""
-    for prime in primes:
-        while number % prime == 0:
-            number //= prime
-    return number
-
-
 def _with_gas_step(case: Case, gas_step_s: float) -> dict[str, Any]:
     step = dividing_step(gas_step_s, case["time"]["dem_step_s"])
     return {"time.gas_step_s": gas_step_s, "time.dem_step_s": step}
@@ -218,7 +207,9 @@ def _coupling(case: Case) -> float:
 
 
 def _step(bed: BedVariant, case: Case) -> float:
-    return float(bed.variant.changes.get("time.dem_step_s", case["time"]["dem_step_s"]))
+    changes = bed.variant.changes
+    step = float(changes.get("time.dem_step_s", case["time"]["dem_step_s"]))
+    return step * float(changes.get("particles.parcel_diameters", 1)) ** 3  # as many fewer steps of particles
 
 
 def _shown(value: object) -> str:

@@ -145,7 +145,7 @@ def minimum_fluidization(of: Suspension, e: float) -> float:
 
 
 def suspension(setup: Setup) -> Suspension:
-    """Spheres and gas of a case whose inputs are written."""
+    """Particles and gas of a case whose inputs are written; of parcels, the particles that they stand for."""
     parameters = read_parameters(setup.folder / "parameters.lig")
-    names = ("diameter", "density", "gas_density", "gas_viscosity")
+    names = ("particle_diameter", "density", "gas_density", "gas_viscosity")
     return Suspension(*(float(parameters[name]) for name in names))

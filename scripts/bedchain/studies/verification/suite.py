@@ -14,6 +14,7 @@ from bedchain.studies.verification import (
     contacts,
     convergence,
     fluidization,
+    parcels,
     settled_bed,
     settling,
     suspension,
@@ -33,6 +34,7 @@ CHECKS: dict[str, Check] = {
     "thickness": thickness.check,
     "conservation": conservation.check,
     "convergence": convergence.check,
+    "parcels": parcels.check,
 }
 
 
