@@ -11,13 +11,13 @@ import pandas as pd
 from bedchain.files import write_csv
 from bedchain.stage import LOG, run_stage
 from bedchain.trajectory.bed_frames import Placement
+from bedchain.trajectory.chunks import CHUNK_BYTES, read_frames
 from bedchain.trajectory.frames_of_case import placement_of, settings_of
 from bedchain.trajectory.imported import Targets, write_imported
 from bedchain.trajectory.store import open_trajectory
 from bedchain.trajectory.survey import Survey, cached_survey, check_even
 from bedchain.trajectory.track import resample
 
-CHUNK_FRAMES = 50
 PERIODIC = (
     "the box is periodic along %s, each %g m: who leaves at one side comes in at the other, which cells see "
     "as a move; distances between frames, such as in choice.csv and the dispersion, do not know of it"
@@ -113,8 +113,9 @@ def in_periods(placement: Placement, frames: Survey) -> Placement:
 def bed_series(store: np.ndarray, times_s: np.ndarray) -> pd.DataFrame:
     """Mean height and number of the particles in each frame: time_s, mean_height_m, particles_1."""
     heights, numbers = [], []
-    for first in range(0, len(store), CHUNK_FRAMES):
-        z = np.array(store[first : first + CHUNK_FRAMES, 1], float)
+    step = max(CHUNK_BYTES // 4 // max(store[:1].nbytes, 1), 1)
+    for first in range(0, len(store), step):
+        z = read_frames(store, first, min(first + step, len(store)))[:, 1].astype(float)
         number = np.isfinite(z).sum(axis=1)
         with np.errstate(invalid="ignore"):  # no height where no tracer was located
             heights += (np.nansum(z, axis=1) / number).tolist()

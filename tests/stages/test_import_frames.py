@@ -6,9 +6,11 @@ import logging
 import numpy as np
 import pandas as pd
 
+from bedchain.array_files import map_npy
 from bedchain.dem.series import read_series
+from bedchain.meter import forget_peak, peak_memory_mb
 from bedchain.trajectory.imported import Targets
-from import_frames import Box, Tables, import_frames
+from import_frames import Box, Tables, bed_series, import_frames
 from made.forms import STEP_S, moving, text_frame, write_form
 
 SECTION = {
@@ -43,3 +45,16 @@ def test_periodic_sides_are_named_and_particles_put_back(tmp_path, caplog):
     assert place == np.float32(series.positions[2, 4, 0] - 0.1 + 0.05)
     assert "periodic along x, each 0.1 m: who leaves at one side" in caplog.text
     assert "periodic along z, each 0.2 m, and the bed is not as long" in caplog.text
+
+
+def test_a_series_of_a_large_store_needs_the_memory_of_a_few_frames(tmp_path):
+    frames = 600
+    shape = (frames, 4, 50_000)
+    file = np.lib.format.open_memmap(tmp_path / "large.npy", "w+", np.float32, shape)  # 0.5 GB of zeros
+    file[-1, 1] = 0.3
+    file._mmap.close()
+    assert forget_peak(), "this system does not tell the peak"
+    before_mb = peak_memory_mb()
+    series = bed_series(map_npy(tmp_path / "large.npy"), np.arange(frames) * 0.1)
+    assert peak_memory_mb() < before_mb + 100
+    assert series["mean_height_m"].iloc[-1] == np.float32(0.3)
