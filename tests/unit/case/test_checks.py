@@ -28,7 +28,7 @@ NAMES = {
     "ranks_share_gas_evenly", "repeats_start_at_a_segment", "seed_is_prime", "splits_lie_in_bed",
     "step_is_stable", "steps_nest", "windows_lie_in_time",
     "cells_hold_parcels", "gas_cells_hold_parcels", "parcels_are_under_gas", "parcels_can_lose_the_energy",
-    "parcels_fit",
+    "parcels_fit", "two_fluids_are_flat_and_have_their_drag_law",
 }  # fmt: skip
 LIST_CHECKS = (
     "from bedchain.case.check_registry import CHECKS; print(*[check.__name__ for _, check in CHECKS])"
