@@ -25,19 +25,27 @@ def plot_network_pulses(pulses: Path, files: FigureFiles) -> None:
         Figure in two forms, and the numbers behind it.
     """
     table = with_text(pd.read_csv(pulses), "zone").dropna(subset="height_m")
-    zones = list(dict.fromkeys(table["zone"]))
+    # a zone of a single state is no curve over height, and its content would hide the others'
+    heights = table.groupby(["chain", "zone"])["height_m"].transform("nunique")
+    drawn = table[heights > 1] if (heights > 1).any() else table
+    zones = list(dict.fromkeys(drawn["zone"]))
     times = sorted(set(table["moment_s"]))
     colours = dict(zip(times, plt.get_cmap("viridis")(np.linspace(0, 0.9, len(times))), strict=True))
     with figure_style():
-        figure, panels = panels_of(list(dict.fromkeys(table["chain"])))
-        for axes, (_, part) in zip(panels, table.groupby("chain", sort=False), strict=True):
+        figure, panels = panels_of(list(dict.fromkeys(drawn["chain"])))
+        for axes, (_, part) in zip(panels, drawn.groupby("chain", sort=False), strict=True):
             for (time, zone), states in part.groupby(["moment_s", "zone"], sort=False):
                 dash = DASHES[zones.index(zone) % len(DASHES)]
                 axes.plot(states["content"], states["height_m"], color=colours[time], ls=dash)
             axes.set(xlabel="content of the start", ylabel="height [m]", xlim=(0, None), ylim=(0, None))
         handles = [Line2D([], [], color=colours[time]) for time in times]
         labels = [f"{time:.3g} s" for time in times]
-        figure.legend(handles, labels, loc="outside lower center", ncols=min(8, len(times)))
+        if len(zones) > 1:
+            handles += [
+                Line2D([], [], color="#222222", ls=DASHES[at % len(DASHES)]) for at in range(len(zones))
+            ]
+            labels += zones
+        figure.legend(handles, labels, loc="outside lower center", ncols=min(8, len(labels)))
         files.save(figure)
     write_csv(table, files.csv)
 

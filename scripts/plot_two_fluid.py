@@ -22,8 +22,8 @@ COLOURS = {"left": "#4477aa", "right": "#66ccee", "low": "#ee6677", "up": "#ccbb
 DASHES = {"frames": "-", "mean_flow": ":"}
 
 
-def plot_two_fluid(record: Path, files: FigureFiles, case: Case) -> None:
-    """Draw the summary of a two-fluid run.
+def plot_two_fluid(record: Path, files: FigureFiles, metrics: Path, case: Case) -> None:
+    """Draw the summary of a two-fluid run, and write its numbers.
 
     Parameters
     ----------
@@ -31,9 +31,12 @@ def plot_two_fluid(record: Path, files: FigureFiles, case: Case) -> None:
         ``record.json`` in the folder of the summary.
     files : FigureFiles
         Figure in two forms, and the numbers behind it.
+    metrics : Path
+        Table to make: quantity, source, value, unit.
     case : dict
     """
     summary = read_summary(record.parent)
+    write_csv(numbers_of(summary), metrics)
     with figure_style():
         size = DOUBLE_COLUMN_IN, 0.75 * DOUBLE_COLUMN_IN
         figure, panels = plt.subplots(2, 3, figsize=size)
@@ -49,6 +52,27 @@ def plot_two_fluid(record: Path, files: FigureFiles, case: Case) -> None:
         curves = [draw_mixing(axes, summary, name) for axes, name in ((radial, "radial"), (axial, "axial"))]
         files.save(figure)
     write_csv(pd.concat([powers, profiles, *curves], ignore_index=True), files.csv)
+
+
+def numbers_of(summary: Summary) -> pd.DataFrame:
+    """Means over the window, bubbles, spectrum, what carries the weight and the cost, as metrics.csv."""
+    record = summary.record
+    within = summary.series[summary.series["time_s"].between(*record["window_s"])]
+    rows = [
+        ("mean_height", within["mean_height_m"].mean(), "m"),
+        ("share_low", within["share_low_1"].mean(), "1"),
+        ("pressure_drop", record["pressure_drop_Pa"], "Pa"),
+        ("pressure_drop_std", record["pressure_drop_std_Pa"], "Pa"),
+        ("pressure_frequency", record["pressure_frequency_Hz"], "Hz"),
+        ("pressure_frequency_resolution", record["pressure_frequency_resolution_Hz"], "Hz"),
+        ("bubble_diameter", record["bubble_diameter_m"], "m"),
+        ("bubble_velocity", record["bubble_velocity_m_s"], "m/s"),
+        *((f"{name}_over_weight", share, "1") for name, share in record.get("carries_weight_1", {}).items()),
+        ("cpu_time_over_simulated_time", record["cpu_s_per_s"], "1"),
+    ]
+    table = pd.DataFrame(rows, columns=["quantity", "value", "unit"]).dropna()
+    table.insert(1, "source", "two_fluid")
+    return table
 
 
 def draw_spectrum(axes: Axes, summary: Summary, case: Case) -> pd.DataFrame:

@@ -9,7 +9,7 @@ include: "run_two_fluid.smk"
 rule write_provenance:
     input:
         code("write_provenance"),
-        metrics=f"{SUMMARY}/record.json",
+        metrics=f"{RESULTS}/metrics.csv",
     output:
         provenance=f"{RESULTS}/provenance.json",
     log:
@@ -28,6 +28,7 @@ FIGURE_RULES = {
     "plot_two_fluid": {
         "name": "fig_two_fluid",
         "input": {"record": f"{SUMMARY}/record.json"},
+        "output": {"metrics": f"{RESULTS}/metrics.csv"},
         "params": {"case": CASE},
     },
 }

@@ -6,6 +6,7 @@ SUMMARY = f"{BED}/two_fluid/{MM}mm"
 CASE_FILES = [
     *expand(f"{FIGURES}/fig_two_fluid{{form}}", form=FORMS.values()),
     f"{SUMMARY}/record.json",
+    f"{RESULTS}/metrics.csv",
     f"{RESULTS}/audit.csv",
     f"{RESULTS}/provenance.json",
 ]

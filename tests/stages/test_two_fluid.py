@@ -14,7 +14,12 @@ def test_the_archived_run_is_drawn_with_what_is_behind_it(tmp_path):
     case = two_fluid_case(load_case(ROOT / "cases" / "paper" / "case.yaml"), 0.01)
     record = ROOT / "cases" / "paper" / "two_fluid" / "10mm" / "record.json"
     names = [tmp_path / f"fig.{form}" for form in ("png", "pdf", "csv")]
-    plot_two_fluid(record, OnlyChecked(*names, DPI), case)
+    plot_two_fluid(record, OnlyChecked(*names, DPI), tmp_path / "metrics.csv", case)
+    metrics = pd.read_csv(tmp_path / "metrics.csv").set_index("quantity")["value"]
+    carried = metrics[
+        [f"{name}_over_weight" for name in ("gas_pressure", "solids_pressure", "momentum", "rest")]
+    ]
+    assert abs(carried.sum() - 1) < 1e-6 and 0.21 < metrics["mean_height"] < 0.22
     table = pd.read_csv(names[2])
     assert set(table["panel"]) == {"spectrum", "voidage", "radial", "axial"}
     voidage = table[table["panel"] == "voidage"]

@@ -10,6 +10,8 @@ from typing import Any
 import pandas as pd
 from jinja2 import Environment, FileSystemLoader, select_autoescape
 
+from bedchain.case.particle_free import particle_free
+
 TEMPLATE = "report.html"
 KINDS = {".png": "image/png", ".mp4": "video/mp4"}
 # rows of metrics.csv for the first page, where a bed has no claims to be compared with
@@ -52,12 +54,12 @@ def bed_section(folder: Path, captions: dict[str, Path], figures: list[Path]) ->
     Returns
     -------
     dict
-        name, title, machine, commit, whether its chains are written down, outcome and table (html), figures
+        name, title, machine, commit, what it is where it has no particles, outcome and table (html), figures
         (name, caption, kind, data).
     """
     record = json.loads((folder / "provenance.json").read_text(encoding="utf-8"))
     claims = folder / "agreement.csv"
-    if written := "network" in record["case"]["values"]:
+    if written := particle_free(record["case"]["values"]):
         outcome, table = network_table(folder / "metrics.csv"), ""
     else:
         outcome = claims_table(claims) if claims.exists() else outcome_of(folder)

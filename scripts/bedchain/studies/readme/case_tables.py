@@ -13,7 +13,6 @@ import pandas as pd
 
 from bedchain.comparison.claims import cost_metrics
 from bedchain.measures.mixing import GROUPS
-from bedchain.studies.ladder.answers import QUANTITIES
 
 PARTS = [name for _, name in GROUPS]
 MONTE_CARLO = "_monte_carlo"
@@ -221,9 +220,8 @@ def ladder(results: Path) -> pd.DataFrame:
             "MB": models["memory_mb"].map(number),
         }
     )
-    for name, quantity in QUANTITIES.items():
-        if name in errors:
-            rows[quantity.title] = errors[name].reindex(models.index).map(number)
+    for name in table.loc[table["error_floors"].notna(), "quantity"].unique():
+        rows[name.replace("_", " ")] = errors[name].reindex(models.index).map(number)
     return rows.loc[models["cost_s_per_s"].sort_values().index].reset_index()
 
 

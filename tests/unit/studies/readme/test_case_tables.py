@@ -173,4 +173,4 @@ def test_models_of_the_ladder_are_cheapest_first_with_blanks_for_what_they_canno
     pd.DataFrame(rows, columns=columns).to_csv(tmp_path / "ladder.csv", index=False)
     table = case_tables.ladder(tmp_path)
     assert table["model"].tolist() == ["static", "bedFoam"] and table["MB"].tolist() == ["120", "300"]
-    assert table["axial mixing"].tolist() == ["0.8", ""] and table["mean pressure drop"].tolist() == ["", "1"]
+    assert table["mixing axial"].tolist() == ["0.8", ""] and table["pressure drop"].tolist() == ["", "1"]
