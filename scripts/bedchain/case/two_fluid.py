@@ -16,6 +16,7 @@ SECTIONS = (
     *("time", "learning", "comparison", "mixing", "figures"),
 )
 USED = {
+    "particles": ("number", "diameter_m", "density_kg_m3"),
     "contact": ("restitution_1",),
     "time": ("gas_step_s", "ramp_s", "end_s", "frame_interval_s", "segment_s"),
     "comparison": ("start_s", "end_s"),

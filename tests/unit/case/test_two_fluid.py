@@ -29,6 +29,8 @@ def test_another_cell_gets_a_step_of_the_same_courant_number(case):
     two = two_fluid_case(case, 0.01)
     assert two["gas"]["cell_size_m"] == 0.01 and two["time"]["gas_step_s"] == pytest.approx(1e-3)
     assert two_fluid_case(case) == case
+    case["particles"]["parcel_diameters"] = 2.0
+    assert two_fluid_case(case)["particles"]["parcel_diameters"] == 1
     assert two_fluid_grids(case) == ["10", "5"]
 
 
@@ -61,6 +63,7 @@ def test_a_case_of_two_fluids_is_one_as_it_stands(tmp_path):
 @pytest.mark.parametrize(
     ("old", "new", "message"),
     [
+        ("9000}", "9000, parcel_diameters: 2}", "particles.parcel_diameters: belongs to particles"),
         ("mixing:", "chain: {lag_s: 0.05}\nmixing:", "chain: belongs to particles, and two fluids have none"),
         ("mixing:", "cells: {columns: 10, rows: 40}\nmixing:", "cells: belongs to particles"),
         ("mixing:", "drum: {revolution_s: 1}\nmixing:", "drum: belongs to particles"),
