@@ -10,7 +10,7 @@ from typing import Any
 
 import numpy as np
 import pandas as pd
-from scipy import stats
+from scipy import special
 
 from bedchain.chains import registry
 from bedchain.chains.registry import CaseChains
@@ -163,7 +163,7 @@ def half_width(values: np.ndarray) -> float:
     """Half of the 95 % interval of a mean of independent values; NaN of a single one."""
     if len(values) < 2:
         return np.nan
-    return float(stats.t.ppf(0.975, len(values) - 1) * values.std(ddof=1) / np.sqrt(len(values)))
+    return float(special.stdtrit(len(values) - 1, 0.975) * values.std(ddof=1) / np.sqrt(len(values)))
 
 
 def spreading_rows(frames: Frames, grid: Grid, lag: int) -> list[Row]:

@@ -19,7 +19,7 @@ from bedchain.physics.packing import (
 from bedchain.physics.whole_numbers import ratio
 
 # neighbour skin: a list is valid until a particle has moved by half of it; changes the speed, not the physics
-SKIN_DIAMETERS = 0.7
+SKIN_DIAMETERS = 0.5
 START_SPEED_M_S = 0.05  # random, breaks the lattice; without effect after the fall
 DUMP_SUFFIX = {"binary": "bin", "text": "txt"}
 

@@ -5,7 +5,6 @@ from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.stats import binom
 
 from bedchain.errors import UserError
 from bedchain.trajectory.cell_store import CellStore, frame_at
@@ -128,6 +127,8 @@ def expected_total_variation(shares: NDArray[np.float64], number: int) -> float:
     float
         0 to 1 [1].
     """
+    from scipy.stats import binom  # late: scipy.stats takes a second to load
+
     chance = shares[shares > 0] / shares.sum()
     deviation = 2 * chance * (1 - chance) * binom.pmf(np.floor(number * chance), number - 1, chance)
     return float(0.5 * deviation.sum())

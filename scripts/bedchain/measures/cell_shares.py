@@ -6,7 +6,6 @@ from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.stats import qmc
 
 from bedchain.trajectory.grid import Grid
 
@@ -30,6 +29,8 @@ def shares_inside(grid: Grid, inside: Callable[[Places, Places, Places], Places]
     (n_cells,) array
         [1], to 0.01 in most grids.
     """
+    from scipy.stats import qmc  # late: scipy.stats takes a second to load
+
     wanted = min(POINTS_OF_RING if grid.form == "rings" else POINTS, MOST_POINTS // grid.n_cells)
     doublings = max(3, int(np.log2(max(1, wanted))))
     points = qmc.Sobol(3, scramble=False).random_base2(doublings) + 0.5 / 2**doublings

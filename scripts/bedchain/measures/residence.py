@@ -5,7 +5,6 @@ from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy import stats
 
 
 class Stays(NamedTuple):
@@ -70,6 +69,8 @@ def left_share(observed: Stays, interval_s: float, times_s: NDArray[np.floating]
     (n_times,) array
         [1]; NaN after the longest stay, where that one is not over.
     """
+    from scipy import stats  # late: scipy.stats takes a second to load
+
     lengths = observed.frames * interval_s
     sample = stats.CensoredData.right_censored(lengths, ~observed.ended)
     share = np.asarray(stats.ecdf(sample).cdf.evaluate(times_s + 1e-9 * interval_s))

@@ -13,7 +13,7 @@ from collections.abc import Callable
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy import stats
+from scipy import special
 
 from bedchain.trajectory.frames import Frames
 
@@ -21,7 +21,7 @@ Array = NDArray[np.float64]
 
 BLOCKS = 5
 LEVEL = 0.95
-STUDENT = float(stats.t.ppf((1 + LEVEL) / 2, BLOCKS - 1))
+STUDENT = float(special.stdtrit(BLOCKS - 1, (1 + LEVEL) / 2))
 # a shorter window does not tell its own error: its blocks are not independent
 FEWEST_CORRELATION_TIMES = 5
 

@@ -3,7 +3,7 @@
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy import stats
+from scipy import special
 
 from bedchain.uncertainty.deviations import deviations, rms
 
@@ -47,5 +47,5 @@ def noise_floor(curves: NDArray[np.float64]) -> tuple[NDArray[np.float64], NDArr
     """
     floor = np.array([floor_of(curves[..., [column]]) for column in range(curves.shape[-1])])
     degrees = len(curves) - 1
-    ends = stats.chi2.ppf([(1 + LEVEL) / 2, (1 - LEVEL) / 2], degrees)
+    ends = 2 * special.gammaincinv(degrees / 2, [(1 + LEVEL) / 2, (1 - LEVEL) / 2])
     return floor, np.sqrt(degrees / ends)[:, None] * floor

@@ -6,7 +6,7 @@ from typing import NamedTuple
 import numpy as np
 import pandas as pd
 from numpy.typing import NDArray
-from scipy import stats
+from scipy import special
 
 from bedchain.uncertainty.bands import correlation_steps
 
@@ -76,7 +76,8 @@ def drift(series: NDArray[np.floating], level: float = LEVEL) -> Drift:
     noise = rest[drawn] @ weights
     # few blocks: the line takes two degrees of freedom, and the spread is itself uncertain (Student)
     free = n_blocks - 2
-    noise *= np.sqrt(n_blocks / free) * stats.t.ppf((1 + level) / 2, free) / stats.norm.ppf((1 + level) / 2)
+    quantile = (1 + level) / 2
+    noise *= np.sqrt(n_blocks / free) * special.stdtrit(free, quantile) / special.ndtri(quantile)
     low, high = np.quantile(noise, [(1 - level) / 2, (1 + level) / 2])
     return Drift(float(values.mean()), change, change - float(high), change - float(low), block)
 

@@ -7,7 +7,7 @@ from typing import Any, Self
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy import stats
+from scipy import special
 
 from bedchain.studies.scan import REPLICATES
 from bedchain.uncertainty.deviations import (
@@ -207,7 +207,7 @@ def scalar_errors(reference: Reference, scalars: dict[str, float]) -> Row:
             continue
         error, half = scalars[name] - float(known.mean()), np.nan
         if known.size > 1:
-            quantile = float(stats.t.ppf((1 + LEVEL) / 2, known.size - 1))
+            quantile = float(special.stdtrit(known.size - 1, (1 + LEVEL) / 2))
             half = quantile * floors[name] * np.sqrt(1 + 1 / known.size)
         row |= columns(name, error, (error - half, error + half), floors[name])
     return row
