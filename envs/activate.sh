@@ -23,6 +23,10 @@ if [ "$(id -u)" -eq 0 ]; then
     export OMPI_ALLOW_RUN_AS_ROOT=1 OMPI_ALLOW_RUN_AS_ROOT_CONFIRM=1
 fi
 
+# One thread for a process's linear algebra, as snakemake gives its jobs: on a busy machine two that wait for each other
+# took 17 times the processor time of one.
+export OPENBLAS_NUM_THREADS="${OPENBLAS_NUM_THREADS:-1}"
+
 # Pictures without a screen; caches inside the project.
 export MPLBACKEND=Agg PYVISTA_OFF_SCREEN=true VTK_DEFAULT_OPENGL_WINDOW=vtkEGLRenderWindow
 export XDG_CACHE_HOME="$bedchain_root/.setup/cache" NUMBA_CACHE_DIR="$bedchain_root/.setup/cache/numba"
