@@ -1,12 +1,13 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Diagnostics of the chains, what they imply and how far they hold: results/<case>/diagnostics.csv."""
 
-from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
 from functools import partial
 from pathlib import Path
 
 import numpy as np
 import pandas as pd
+from numpy.typing import NDArray
 
 from bedchain.chains import registry
 from bedchain.chains.chain import Chain
@@ -17,17 +18,21 @@ from bedchain.chains.markov_chain import MarkovChain
 from bedchain.chains.passage import top_row
 from bedchain.chains.registry import ModelSettings
 from bedchain.comparison.diagnostics import (
+    TIMES,
     arrival_row,
+    arrived_share,
     dispersion_rows,
     estimator_rows,
+    lacey_indices,
     lacey_rows,
+    share_row,
     table,
     time_rows,
     times_of,
 )
 from bedchain.comparison.forecasts import count_sides
 from bedchain.comparison.markov_test import check_model, counted_rows, doubled_lags
-from bedchain.comparison.metrics import Metric, metric
+from bedchain.comparison.metrics import metric
 from bedchain.comparison.mode_maps import COLUMNS as MAP_COLUMNS
 from bedchain.comparison.mode_maps import mode_maps, mode_rows
 from bedchain.files import write_csv
@@ -50,6 +55,7 @@ LACEY_MOMENTS = 40
 DISPERSION_STRIDE = 2
 # their long-run densities come with the comparison of the estimators
 PAPER_MODELS = ("static", "dynamic")
+NO_BAND: Array = np.empty(0)
 REPORTED = ("mixing_time", "long_run_total_variation", "chapman_kolmogorov_rms")
 
 
@@ -89,29 +95,46 @@ def diagnose_chains(
     remembered = memory(frames, splits.split_x_m)
     if short := shortness((len(frames.times_s) - 1) / remembered):
         LOG.warning("the learning window's %s", short)
-    random = iter(np.random.default_rng(settings.seed).spawn(2 * len(chains)))
+    seeds = np.random.SeedSequence(settings.seed).spawn(2 * len(chains))
+    of_paths, of_indices = (
+        dict(zip(chains, part, strict=True)) for part in (seeds[: len(chains)], seeds[len(chains) :])
+    )
     density = visited_density(count_moves(frames.cells, run.grid.n_cells, lag))
     top = top_row(density, run.grid, TOP_SHARE)
 
     rows = estimator_rows(frames, run.grid, lag, list(chains))
     rows += counted_rows(looks, frames, remembered)
     before = run.up_to(learning.start_s, lag, run.grid)
+    compared = run.window(comparison)
+    there = np.asarray(compared.cells[0]) != OUTSIDE
+    marked = sides(np.asarray(compared.x_m[0]), np.asarray(compared.z_m[0]), *splits) & there
+    start = run.up_to(comparison.start_s, lag, run.grid)
+    moments = moments_of((len(compared.times_s) - 1) // lag)
+    asked = Asked(before, (len(frames.times_s) - 1) // lag, top, start, marked[:, there], moments)
+    length_s, height_m = asked.n_steps * lag * frames.interval_s, top * run.grid.cell_height_m
+    of_time = np.asarray(moments * (lag * frames.interval_s), np.float64)
     maps: list[pd.DataFrame] = []
     for name, markov in with_matrix.items():
         options = settings.options.get(name, {})
         relearner = partial(
             registry.relearner, name, frames, run.grid, estimator=settings.estimator, **options
         )
-        times_there = partial(times_from, before, 1 / frames.cells.shape[1], top)
-        checked, first = check_model(name, relearner, frames, looks, lags, remembered, times_there)
-        numbers = (first.whole.further, first.left_out.further)
+        numbers_of = partial(asked.numbers, of_indices[name])
+        checked, first = check_model(name, relearner, frames, looks, lags, remembered, numbers_of)
+        stays, share, indices = zip(*map(parted, (first.whole.further, first.left_out.further)), strict=True)
         flow = circulation(first.chain, first.modes.density)
         maps.append(mode_maps(first.chain, first.modes, flow))
         rows += mode_rows(first.chain, first.modes, flow)
-        rows += checked + time_rows(name, markov.lag_s, top * run.grid.cell_height_m, *numbers)
-    rows += path_rows("dem", frames, run.grid, top, lags)
+        rows += checked + time_rows(name, markov.lag_s, height_m, *stays)
+        if np.isfinite(share[0]):
+            rows.append(share_row(name, length_s, height_m, float(share[0]), share[1]))
+        rows += lacey_rows(name, of_time, *indices)
+    long_enough = (len(frames.times_s) - 1) / remembered
+    if run.grid.rows_are_heights:
+        rows.append(arrival_row("dem", frames, run.grid, top))
+    rows += dispersion_rows("dem", frames, run.grid, lags[::DISPERSION_STRIDE], long_enough)
     known = in_cells(frames.times_s, frames.cells, run.grid)
-    rows += dispersion_rows("dem_cells", known, run.grid, lags[::DISPERSION_STRIDE])
+    rows += dispersion_rows("dem_cells", known, run.grid, lags[::DISPERSION_STRIDE], long_enough)
     for name, chain in chains.items():
         if name not in PAPER_MODELS:
             distance = total_variation(chain.long_run_density(before), density)
@@ -119,12 +142,17 @@ def diagnose_chains(
                 metric("long_run_total_variation", name, distance, lag_s=chain.lag_s, part=settings.estimator)
             )
         times = frames.times_s[::lag]
-        paths = np.array([now.copy() for now in chain.paths(before, len(times) - 1, next(random))])
-        steps = [one // lag for one in lags]
-        rows += path_rows(name, in_cells(times, paths, run.grid), run.grid, top, steps)
-    start = run.up_to(comparison.start_s, lag, run.grid)
-    compared = run.window(comparison)
-    rows += index_rows(chains, start, compared, splits, lag, random)
+        random = np.random.default_rng(of_paths[name])
+        paths = in_cells(
+            times, np.array([now.copy() for now in chain.paths(before, len(times) - 1, random)]), run.grid
+        )
+        if name not in with_matrix:
+            if run.grid.rows_are_heights:
+                rows.append(arrival_row(name, paths, run.grid, top))
+            rows += lacey_rows(name, of_time, asked.indices(of_indices[name], chain), NO_BAND)
+        rows += dispersion_rows(name, paths, run.grid, [one // lag for one in lags[::DISPERSION_STRIDE]])
+    seen = [marked_histogram(compared.cells[step * lag], marked, run.grid.n_cells) for step in moments]
+    rows += lacey_rows("dem", of_time, lacey_indices(np.array(seen)), NO_BAND)
     write_csv(table(rows), diagnostics)
     write_csv(pd.concat(maps) if maps else pd.DataFrame(columns=list(MAP_COLUMNS)), modes)
     for one in rows:
@@ -133,58 +161,62 @@ def diagnose_chains(
             LOG.info("%s: %.4g %s", what, one["value"], one["unit"])
 
 
-def times_from(start: Frames, least_share: float, top: int, chain: MarkovChain) -> Array:
-    """`times_of` a chain that starts from the last of some frames."""
-    held = np.bincount(chain.states(start), minlength=chain.matrix.shape[0])
-    return times_of(chain, held.astype(float), least_share, top)
+@dataclass(frozen=True)
+class Asked:
+    """What each chain is asked, and those that are learned without a block of time.
+
+    Attributes
+    ----------
+    before : Frames
+        Up to the start of the learning window.
+    n_steps : int
+        Steps in the learning window.
+    top : int
+        Row of cells to reach from the bottom row.
+    start : Frames
+        Up to the start of the comparison window, of the particles that are there then.
+    marked : (4, n_particles) bool array
+        Groups of `mixing.GROUPS` at that start.
+    moments : (n_moments,) int array
+        Steps after it at which Lacey's index is given.
+    """
+
+    before: Frames
+    n_steps: int
+    top: int
+    start: Frames
+    marked: NDArray[np.bool_]
+    moments: NDArray[np.int64]
+
+    def numbers(self, seed: np.random.SeedSequence, chain: MarkovChain) -> Array:
+        """Times, share that has arrived at the top, and Lacey's indices, in one row; see `parted`."""
+        held = np.bincount(chain.states(self.before), minlength=chain.matrix.shape[0]).astype(float)
+        times = times_of(chain, held, 1 / self.before.cells.shape[1], self.top)
+        share = arrived_share(chain, held, self.top, self.n_steps)
+        return np.concatenate((times, [share], self.indices(seed, chain).ravel()))
+
+    def indices(self, seed: np.random.SeedSequence, chain: Chain) -> Array:
+        """Lacey's indices of as many particles as the DEM has, drawn by a chain; (2, n_moments)."""
+        random = np.random.default_rng(seed)
+        return lacey_indices(chain.densities(self.start, self.marked, list(self.moments), random))
 
 
-def path_rows(source: str, frames: Frames, grid: Grid, top: int, lags: Sequence[int]) -> list[Metric]:
-    """Arrivals at the top and dispersion coefficients of particles followed from frame to frame."""
-    rows = [arrival_row(source, frames, grid, top)] if grid.rows_are_heights else []
-    return rows + dispersion_rows(source, frames, grid, lags[::DISPERSION_STRIDE])
+def parted(numbers: Array) -> tuple[Array, Array, Array]:
+    """Times (..., 4), share (...) and indices (..., 2, n_moments) of `Asked.numbers`."""
+    times, share, indices = np.split(numbers, [len(TIMES), len(TIMES) + 1], axis=-1)
+    n_moments = indices.shape[-1] // 2
+    return times, share[..., 0], indices.reshape(*indices.shape[:-1], 2, n_moments)
+
+
+def moments_of(n_steps: int) -> NDArray[np.int64]:
+    """Steps of the comparison window at which Lacey's index is given."""
+    return np.unique(np.linspace(0, n_steps, min(n_steps, LACEY_MOMENTS) + 1).astype(np.int64))
 
 
 def in_cells(times_s: np.ndarray, cells: np.ndarray, grid: Grid) -> Frames:
     """Frames in which every particle is in the middle of its cell, all that a chain of cells knows."""
     x, z = grid.centres_m.astype(np.float32).T
     return Frames(times_s, x[cells], z[cells], np.asarray(cells))
-
-
-def index_rows(
-    chains: dict[str, Chain], start: Frames, window: Frames, splits: Splits, lag: int,
-    random: Iterator[np.random.Generator],
-) -> list[Metric]:  # fmt: skip
-    """Lacey's index over the comparison window, by the DEM and by as many particles of each chain.
-
-    Parameters
-    ----------
-    chains : dict of str to Chain
-    start : Frames
-        Up to the start of the comparison, of the particles that are there then.
-    window : Frames
-        The comparison window.
-    splits : Splits
-    lag : int
-        Frames in a step of the chains.
-    random : iterator of numpy Generator
-        One for each chain.
-
-    Returns
-    -------
-    list of dict
-    """
-    there = np.asarray(window.cells[0]) != OUTSIDE
-    marked = sides(np.asarray(window.x_m[0]), np.asarray(window.z_m[0]), *splits) & there
-    first = next(iter(chains.values()))
-    n_steps = (len(window.times_s) - 1) // lag
-    steps = np.unique(np.linspace(0, n_steps, min(n_steps, LACEY_MOMENTS) + 1).astype(int))
-    times = steps * first.lag_s
-    seen = [marked_histogram(window.cells[step * lag], marked, first.grid.n_cells) for step in steps]
-    rows = lacey_rows("dem", times, np.array(seen))
-    for name, chain in chains.items():
-        rows += lacey_rows(name, times, chain.densities(start, marked[:, there], list(steps), next(random)))
-    return rows
 
 
 if rule := globals().get("snakemake"):

@@ -109,6 +109,10 @@ def test_residence_and_passage_are_those_of_the_walk(walk, model):
     assert value(walk, "first_passage_time", model) == pytest.approx(24 * LAG, rel=SAMPLING)
     share = value(walk, "first_passage_share", "dem")
     assert value(walk, "first_passage_share", model) == pytest.approx(share, abs=2 * SHARE_ERROR)
+    rows = walk.table[walk.table["quantity"].isin(["first_passage_share", "lacey_index"])]
+    own = rows[(rows["source"] == model) & rows["value"].between(1e-6, 1 - 1e-6)]
+    assert len(own) > 2 and (own["ci_low"] <= own["value"]).all() and (own["value"] <= own["ci_high"]).all()
+    assert rows[rows["source"] == "dem"]["ci_low"].isna().all()  # a single realisation
 
 
 @pytest.mark.parametrize("source", ["dem", "dem_cells", *MODELS])

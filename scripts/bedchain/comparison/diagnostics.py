@@ -10,6 +10,7 @@ from numpy.typing import NDArray
 from bedchain.chains import dynamic, static
 from bedchain.chains.counting import count_moves, count_pairs
 from bedchain.chains.estimators import ESTIMATORS, estimated_rows, visited_density
+from bedchain.chains.first_passage import passage_distribution
 from bedchain.chains.markov_chain import MarkovChain
 from bedchain.chains.passage import arrived, passage_time, residence_in_cells
 from bedchain.comparison.metrics import Metric, metric
@@ -144,12 +145,54 @@ def time_rows(source: str, lag_s: float, height_m: float, times: Array, left_out
 
 def arrival_row(source: str, frames: Frames, grid: Grid, top: int) -> Metric:
     """Share of the bottom row's particles that reach the row ``top`` by the end of the frames."""
-    share = arrived(frames.cells, grid, top)[-1]
+    share = float(arrived(frames.cells, grid, top)[-1])
     length = float(frames.times_s[-1] - frames.times_s[0])
-    return metric("first_passage_share", source, share, time_s=length, height_m=top * grid.cell_height_m)
+    return share_row(source, length, top * grid.cell_height_m, share, np.empty(0))
 
 
-def dispersion_rows(source: str, frames: Frames, grid: Grid, lags: Sequence[int]) -> list[Metric]:
+def share_row(source: str, time_s: float, height_m: float, share: float, left_out: Array) -> Metric:
+    """Row of the share that has reached a height [m] after a time [s], with its band.
+
+    Parameters
+    ----------
+    source : str
+    time_s, height_m : float
+    share : float
+        [1].
+    left_out : (BLOCKS,) array
+        By chains learned without each block of time; none of a single realisation [1].
+    """
+    ends = map(float, block_band(share, left_out, "share"))
+    return metric("first_passage_share", source, share, "1", *ends, time_s=time_s, height_m=height_m)
+
+
+def arrived_share(chain: MarkovChain, start: NDArray[np.float64], top: int, n_steps: int) -> float:
+    """Share of the bottom row's particles that a chain takes to the row ``top`` within some steps.
+
+    Parameters
+    ----------
+    chain : MarkovChain
+    start : (n_states,) array
+        Particles in each state at the start; those in the bottom row count.
+    top : int
+    n_steps : int
+
+    Returns
+    -------
+    float
+        [1]; NaN without particles at the bottom, and where rows are no heights.
+    """
+    row_of_state = chain.grid.indices(chain.cell_of_state)[1]
+    at_bottom = np.where(row_of_state == 0, start, 0.0)
+    if not (chain.grid.rows_are_heights and at_bottom.sum() > 0):
+        return float("nan")
+    of_steps = passage_distribution(chain.matrix, row_of_state >= top, at_bottom / at_bottom.sum(), n_steps)
+    return float(of_steps.sum())
+
+
+def dispersion_rows(
+    source: str, frames: Frames, grid: Grid, lags: Sequence[int], correlation_times: float = 0.0
+) -> list[Metric]:  # fmt: skip
     """Dispersion coefficients of each row of cells, at several lags.
 
     Parameters
@@ -160,6 +203,9 @@ def dispersion_rows(source: str, frames: Frames, grid: Grid, lags: Sequence[int]
     grid : Grid
     lags : sequence of int
         Frames in a displacement.
+    correlation_times : float
+        In the frames, for bands by leaving five blocks of them out; none of a chain's particles, which show
+        their own scatter and not that of what was learned [1].
 
     Returns
     -------
@@ -173,29 +219,50 @@ def dispersion_rows(source: str, frames: Frames, grid: Grid, lags: Sequence[int]
         for layer in np.flatnonzero(layers.displacements >= FEWEST_DISPLACEMENTS):
             for column, axis in enumerate("xz"):
                 value, where = layers.dispersion_m2_s[layer, column], {"height_m": layers.height_m[layer]}
-                rows.append(metric(f"dispersion_{axis}", source, value, "m2/s", lag_s=lag_s, **where))
+                without = layers.left_out_m2_s[:, layer, column]
+                ends = map(float, block_band(value, without, "positive", correlation_times))
+                rows.append(metric(f"dispersion_{axis}", source, value, "m2/s", *ends, lag_s=lag_s, **where))
     return rows
 
 
-def lacey_rows(source: str, times_s: NDArray[np.float64], numbers: np.ndarray) -> list[Metric]:
+def lacey_indices(numbers: np.ndarray) -> Array:
     """Lacey's index of the left and of the low particles over time.
+
+    Parameters
+    ----------
+    numbers : (n_times, 4, n_cells) array
+        Particles of each group of `mixing.GROUPS` in each cell [1].
+
+    Returns
+    -------
+    (2, n_times) array
+        In the order of `MARKED` [1].
+    """
+    groups = MARKED.values()
+    return np.array([[lacey_index(now[at], now[at] + now[at + 1]) for now in numbers] for at in groups])
+
+
+def lacey_rows(source: str, times_s: NDArray[np.float64], indices: Array, left_out: Array) -> list[Metric]:
+    """Rows of `lacey_indices` with their bands.
 
     Parameters
     ----------
     source : str
     times_s : (n_times,) array
         [s].
-    numbers : (n_times, 4, n_cells) array
-        Particles of each group of `mixing.GROUPS` in each cell [1].
+    indices : (2, n_times) array
+        [1].
+    left_out : (BLOCKS, 2, n_times) array
+        By chains learned without each block of time; none of a single realisation [1].
 
     Returns
     -------
     list of dict
         lacey_index, part = radial or axial.
     """
+    low, high = block_band(indices, left_out)
     return [
-        metric("lacey_index", source, lacey_index(now[group], now[group] + now[group + 1]), time_s=time,
-            part=direction)
-        for direction, group in MARKED.items()
-        for time, now in zip(times_s, numbers, strict=True)
-    ]  # fmt: skip
+        metric("lacey_index", source, value, "1", *ends, time_s=time, part=direction)
+        for direction, *of_time in zip(MARKED, indices, low, high, strict=True)
+        for time, value, *ends in zip(times_s, *of_time, strict=True)
+    ]

@@ -7,6 +7,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from bedchain.errors import DataError
+from bedchain.measures.dispersion_by_lag import BLOCKS
 from bedchain.trajectory.frames import Lag
 
 
@@ -24,12 +25,15 @@ class Dispersion:
         Mean velocity along x and z [m/s]; NaN in a layer without particles.
     dispersion_m2_s : (n_layers, 2) array
         Variance of the displacement over twice the lag, along x and z [m2/s].
+    left_out_m2_s : (BLOCKS, n_layers, 2) array
+        The same of the displacements that start outside one of five equal blocks of the frames [m2/s].
     """
 
     height_m: NDArray[np.float64]
     displacements: NDArray[np.int64]
     drift_m_s: NDArray[np.float64]
     dispersion_m2_s: NDArray[np.float64]
+    left_out_m2_s: NDArray[np.float64]
 
 
 def dispersion_by_height(
@@ -61,22 +65,30 @@ def dispersion_by_height(
             "widen the window or cut the lag"
         )
     n_layers = len(edges_m) - 1
-    number = np.zeros(n_layers + 2)
-    sums, squares = np.zeros((2, n_layers + 2)), np.zeros((2, n_layers + 2))
-    for frame in range(len(x_m) - lag.frames):
+    moments = np.zeros((BLOCKS, 3, 2, n_layers + 2))  # number, sum and sum of squares
+    n_starts = len(x_m) - lag.frames
+    for frame in range(n_starts):
         layer = layer_of(np.asarray(z_m[frame], np.float64), edges_m)
-        number += np.bincount(layer, minlength=n_layers + 2)
+        of_block = moments[frame * BLOCKS // n_starts]
+        of_block[0] += np.bincount(layer, minlength=n_layers + 2)
         for axis, position in enumerate((x_m, z_m)):
             step = np.subtract(position[frame + lag.frames], position[frame], dtype=np.float64)
-            sums[axis] += np.bincount(layer, step, n_layers + 2)
-            squares[axis] += np.bincount(layer, step**2, n_layers + 2)
-    counts = np.where(number > 0, number, np.nan)[1:-1]
-    mean = sums[:, 1:-1] / counts
-    variance = np.maximum(squares[:, 1:-1] / counts - mean**2, 0.0)
-    middle = 0.5 * (edges_m[:-1] + edges_m[1:])
-    return Dispersion(
-        middle, number[1:-1].astype(np.int64), (mean / lag.seconds).T, (variance / (2 * lag.seconds)).T
-    )
+            of_block[1, axis] += np.bincount(layer, step, n_layers + 2)
+            of_block[2, axis] += np.bincount(layer, step**2, n_layers + 2)
+    whole = moments.sum(axis=0)
+    mean_m, variance_m2 = _mean_and_variance(whole)
+    left_out_m2 = np.stack([_mean_and_variance(whole - of_block)[1] for of_block in moments])
+    middle, twice_s = 0.5 * (edges_m[:-1] + edges_m[1:]), 2 * lag.seconds
+    number = whole[0, 0, 1:-1].astype(np.int64)
+    return Dispersion(middle, number, mean_m / lag.seconds, variance_m2 / twice_s, left_out_m2 / twice_s)
+
+
+def _mean_and_variance(moments: NDArray[np.float64]) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+    """Of the displacements of each layer, (n_layers, 2), from (3, 2, n_layers + 2) moments."""
+    number, total, square = moments[:, :, 1:-1]
+    counts = np.where(number > 0, number, np.nan)
+    mean = total / counts
+    return mean.T, np.maximum(square / counts - mean**2, 0.0).T
 
 
 def layer_of(z_m: NDArray[np.float64], edges_m: NDArray[np.float64]) -> NDArray[np.int64]:

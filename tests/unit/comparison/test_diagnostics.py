@@ -66,9 +66,30 @@ def test_arrivals_and_mixing_by_hand():
     assert row["value"] == 0.5 and row["time_s"] == pytest.approx(0.05) and row["height_m"] == 0.02
     # apart at first, then each cell as the whole
     numbers = np.array([[[4, 0], [0, 4], [4, 0], [0, 4]], [[2, 2], [2, 2], [4, 0], [0, 4]]])
-    value = by(diagnostics.lacey_rows("dem", np.array([0.0, 1.0]), numbers), "part", "time_s")
+    indices = diagnostics.lacey_indices(numbers)
+    rows = diagnostics.lacey_rows("dem", np.array([0.0, 1.0]), indices, np.empty(0))
+    assert np.isnan([row["ci_low"] for row in rows]).all()
+    value = by(rows, "part", "time_s")
     assert value["radial", 0.0] == value["axial", 1.0] == pytest.approx(0)
     assert value["radial", 1.0] == pytest.approx(0.25 / (0.25 - 0.0625))
+
+
+def test_bands_of_indices_and_shares_hold_them_and_need_every_block():
+    indices = np.array([[0.2, 0.5], [0.3, 0.9]])
+    left_out = indices + 0.01 * np.arange(-2, 3)[:, None, None]
+    rows = diagnostics.lacey_rows("static", np.array([0.0, 1.0]), indices, left_out)
+    assert all(row["ci_low"] < row["value"] < row["ci_high"] for row in rows)
+    share = diagnostics.share_row("static", 1.0, 0.02, 0.9, 0.9 + 0.02 * np.arange(-2, 3))
+    assert 0 < share["ci_low"] < 0.9 < share["ci_high"] < 1  # on a logit scale
+    assert np.isnan(diagnostics.share_row("dem", 1.0, 0.02, 0.9, np.empty(0))["ci_low"])
+
+
+def test_particles_that_climb_a_row_with_one_half_arrive_as_two_heads_do():
+    grid = Grid(0.01, 0.03, 1, 3)
+    chain = registry.learn("static", framed(np.array([[0, 0, 1, 1, 2, 2], [0, 1, 1, 2, 2, 0]]), grid), grid)
+    for steps, share in ((1, 0.0), (2, 0.25), (3, 0.5), (4, 11 / 16)):
+        assert diagnostics.arrived_share(chain, np.array([4.0, 9.0, 9.0]), 2, steps) == pytest.approx(share)
+    assert np.isnan(diagnostics.arrived_share(chain, np.array([0.0, 1.0, 1.0]), 2, 3))
 
 
 def test_dispersion_rows_need_enough_displacements():
@@ -77,6 +98,11 @@ def test_dispersion_rows_need_enough_displacements():
     z = np.where(np.arange(30) < 28, 0.005, 0.025) * np.ones(x.shape)
     frames = Frames(np.arange(41) * 0.025, x, z, np.zeros(x.shape, np.int32))
     rows = diagnostics.dispersion_rows("dem", frames, GRID, [1])
+    assert np.isnan([row["ci_low"] for row in rows]).all()
+    banded = diagnostics.dispersion_rows("dem", frames, GRID, [1], 20.0)
+    assert [row["value"] for row in banded] == [row["value"] for row in rows]
+    ends = {row["quantity"]: (row["ci_low"], row["ci_high"]) for row in banded}
+    assert ends["dispersion_x"][0] < 0.01 / 0.05 < ends["dispersion_x"][1]
     # 2 x 40 displacements in the top row are too few
     assert {row["height_m"] for row in rows} == {0.005}
     value = by(rows, "quantity")
