@@ -10,15 +10,13 @@ import pandas as pd
 from bedchain.files import write_csv
 from bedchain.measures.choice import (
     AXES,
-    MOST_ADDED,
     REACHED,
-    ChosenCells,
     ChosenLag,
-    choose_cells,
     choose_lag,
     correlation_times,
     raised,
 )
+from bedchain.measures.choice_of_cells import MOST_ADDED, ChosenCells, choose_cells
 from bedchain.measures.dispersion_by_lag import DispersionByLag, dispersion_by_lag, thinned
 from bedchain.measures.mixing import Splits
 from bedchain.stage import LOG, run_stage

@@ -17,7 +17,8 @@ from bedchain.figures.style import (
     label_parts,
 )
 from bedchain.files import write_csv
-from bedchain.measures.choice import MOST_ADDED, REACHED
+from bedchain.measures.choice import REACHED
+from bedchain.measures.choice_of_cells import MOST_ADDED
 from bedchain.stage import run_stage
 
 COLOURS = {"x": "#4477aa", "z": "#ee6677"}

@@ -17,7 +17,8 @@ from bedchain.errors import DataError, UserError
 from bedchain.figures.model_styles import BASELINE
 from bedchain.files import write_arrays, write_csv
 from bedchain.measures.batch import Batch
-from bedchain.measures.choice import choose_cells, choose_lag, raised
+from bedchain.measures.choice import choose_lag, raised
+from bedchain.measures.choice_of_cells import choose_cells
 from bedchain.measures.dispersion_by_lag import dispersion_by_lag, thinned
 from bedchain.measures.lagrangian import Statistics
 from bedchain.measures.mixing import Splits
