@@ -9,14 +9,17 @@ import pytest
 
 from made import ROOT
 
-COMPILER = """#!/bin/sh
+COMPILER = r"""#!/bin/sh
 case $* in
 -print-multiarch) echo x86_64-linux-gnu && exit ;;
 --version) echo compiler 1 && exit ;;
-*" -c "*) file=${*##* -c } && file=$(basename "${file%% *}") && echo "$file" >>compiled ;;
+*" -c "*) file=${*##* -c } && sed -n 's/^#line 1 "\(.*\)"$/\1/p' "${file%% *}" >"${file%% *}.names" ;;
 *) echo "$*" >linked ;;
 esac
-[ "$file" != "$BROKEN" ] || exit 1
+if [ -n "$file" ]; then
+    cat "${file%% *}.names" >>compiled
+    ! grep -q "^$BROKEN\$" "${file%% *}.names" || exit 1
+fi
 while [ "$1" != -o ]; do shift; done
 : >"$2"
 """
@@ -50,17 +53,28 @@ def test_only_what_has_changed_is_compiled_again(build, tmp_path):
     assert build() == []
     with (sources / "pEqn.C").open("a") as stream:
         stream.write("// edited\n")
-    assert build() == ["pEqn.C"]
+    assert build() == ["UEqn.C", "bedFoam.C", "fields.C", "pEqn.C"]
+    with (sources / "dragLaws.C").open("a") as stream:
+        stream.write("// edited\n")
+    assert build() == ["dragLaws.C"]
     with (sources / "fields.H").open("a") as stream:
         stream.write("// edited\n")
     assert build() == every
 
 
-def test_a_source_that_is_gone_is_not_linked(build, tmp_path):
+def test_a_line_that_is_gone_is_not_linked(build, tmp_path):
     build()
-    assert "slabs.o" in (tmp_path / "linked").read_text()
+    assert "dragLaws.o" in (tmp_path / "linked").read_text()
+    script = tmp_path / "solver/build.sh"
+    script.write_text(script.read_text().replace("\ndragLaws'", "'"))
+    assert "dragLaws.C" not in build() and "dragLaws.o" not in (tmp_path / "linked").read_text()
+
+
+def test_a_source_that_is_gone_stops_the_build(build, tmp_path):
     (tmp_path / "solver/bedFoam/slabs.C").unlink()
-    assert build() == [] and "slabs.o" not in (tmp_path / "linked").read_text()
+    with pytest.raises(subprocess.CalledProcessError):
+        build()
+    assert not (tmp_path / "out/bedFoam").exists()
 
 
 def test_a_source_that_does_not_compile_is_compiled_again(build, tmp_path):

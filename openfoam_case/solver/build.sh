@@ -2,8 +2,19 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 # Build bedFoam against Debian's OpenFOAM and LIGGGHTS:  sh openfoam_case/solver/build.sh results/bin/bedFoam
 # The OpenFOAM headers are put into .openfoam/include by envs/setup.sh. Objects stay in results/bin/bedFoam.objects: they serve
-# again where neither their source, nor a header of bedFoam, nor how they are made has changed.
+# again where neither their sources, nor a header of bedFoam, nor how they are made has changed.
 set -eu
+
+# Sources that are compiled as one, a line each: OpenFOAM's templates take most of the time and are made anew for each line.
+# ParticleForces and ParticleDrag stand alone: beside others the compiler rounds their sums otherwise, which gives another
+# realisation of each bed. LIGGGHTS's headers do not go together with OpenFOAM's.
+together='bedFoam UEqn pEqn fields
+DemCoupling BedSeries Deposit Guards Inlet RunReport bedState slabs
+ParticleForces
+ParticleDrag
+Liggghts
+SlabGrid
+dragLaws'
 
 output=${1:?usage: sh openfoam_case/solver/build.sh OUTPUT}
 sources=$(dirname -- "$0")/bedFoam
@@ -24,25 +35,26 @@ set -- "$@" -isystem /usr/include/liggghts -isystem "/usr/lib/$arch/openmpi/incl
 
 objects=$output.objects
 versions=$(g++ --version && dpkg-query -W libopenfoam libliggghts-dev || true)
-state=$({ echo "$versions" "$@" && cat "$sources"/*.H; } | sha256sum)
+state=$({ echo "$versions" "$together" "$@" && cat "$sources"/*.H; } | sha256sum)
 [ "$(cat "$objects/state" 2>/dev/null)" = "$state" ] || {
     rm -rf "$objects"
     mkdir -p "$objects"
     echo "$state" >"$objects/state"
 }
-for object in "$objects"/*.o; do # of a source that is no more
-    [ -e "$sources/$(basename "$object" .o).C" ] || rm -f "$object"
-done
 
-# Each file on its own, two at a time; the copy of a source says of what its object was made
+# Each line on its own, two at a time; the joined text beside an object says of what it was made
 # shellcheck disable=SC2016 # for the inner shell
-find "$sources" -name '*.C' -print0 | xargs -0 -P 2 -I{} sh -euc '
-    source=$1 object=$2/$(basename "$1" .C).o copy=$2/$(basename "$1")
-    shift 2
-    ! cmp -s "$source" "$copy" || exit 0
-    rm -f "$copy"
-    g++ "$@" -c "$source" -o "$object"
-    cp "$source" "$copy"' build {} "$objects" "$@" "-I$sources"
+echo "$together" | xargs -P 2 -I{} sh -euc '
+    names=$1 object=$2/${1%% *} sources=$3
+    shift 3
+    for name in $names; do
+        echo "#line 1 \"$name.C\"" # for messages of the compiler
+        cat "$sources/$name.C"
+    done >"$object.new.C"
+    ! cmp -s "$object.new.C" "$object.C" || exit 0
+    rm -f "$object.C"
+    g++ "$@" "-I$sources" -c "$object.new.C" -o "$object.o"
+    mv "$object.new.C" "$object.C"' build {} "$objects" "$sources" "$@"
 g++ -o "$output.part" "$objects"/*.o -L/usr/lib/openmpi-system -L"/usr/lib/$arch/openmpi/lib" \
     -lfiniteVolume -lmeshTools -lOpenFOAM -lPstream -lliggghts -lmpi -lmpi_cxx -ldl -lm
 mv "$output.part" "$output"

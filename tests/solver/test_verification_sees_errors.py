@@ -25,7 +25,7 @@ def wrong_solver(solver, tmp_path_factory):
         text = source.read_text()
         assert text.count(right) == 1
         source.write_text(text.replace(right, wrong))
-    # all but the two wrong sources are as they were
+    # what is not compiled together with a wrong source is as it was
     shutil.copytree(f"{solver}.objects", folder / "bedFoam.objects")
     command = ["sh", str(folder / "solver/build.sh"), str(folder / "bedFoam")]
     subprocess.run(command, cwd=ROOT, check=True, capture_output=True)
