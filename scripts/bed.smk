@@ -63,13 +63,13 @@ rule run_dem:
     priority: 2  # longest of all: what another bed and the repeats have to do fits beside it and after it
     conda:
         "../envs/python.yaml"
-    threads: CASE["run"]["ranks"]
+    threads: RANKS
     params:
         **pick(CASE, "time.end_s", "time.segment_s"),
         folder=subpath(output.dem, parent=True),
     shell:
         "python scripts/run_dem.py {params.folder} --end {params.end_s} --segment {params.segment_s}"
-        " --ranks {threads} 2>&1 | tee {log} >&2"
+        f" --ranks {RANKS_GIVEN} 2>&1 | tee {{log}} >&2"
 
 
 # Another realisation of the comparison window, from a state of the main run that was changed a little. What else waits
@@ -91,7 +91,7 @@ rule repeat_dem:
     priority: 1
     conda:
         "../envs/python.yaml"
-    threads: repeat_ranks(CASE["run"]["ranks"], len(REPEATS))
+    threads: repeat_ranks(RANKS, len(REPEATS))
     params:
         **pick(CASE, "comparison.start_s", "comparison.end_s", "time.segment_s"),
         folder=subpath(input.dem, parent=True),

@@ -3,12 +3,15 @@
 from bedchain.case.cell_checks import not_flat
 from bedchain.case.chosen import is_auto
 from bedchain.case.parcels import parcel_case
+from bedchain.case.rank_checks import most_ranks
 from bedchain.rule_files import source_files
 
 SIMULATED = parcel_case(CASE)  # with parcels in place of particles, where the case has them
 MODELS = CASE["chain"]["models"]
 CHOICE = f"{RESULTS}/choice.csv"
 SETTLED = {"choice": CHOICE} if is_auto(CASE) else {}  # input of the rules that need the lag or the cells
+RANKS = 1 if "frames" in CASE else most_ranks(CASE)
+RANKS_GIVEN = "auto --cores {threads}" if CASE.get("run", {}).get("ranks") == "auto" else "{threads}"
 REPEATS = range(1, CASE["comparison"]["repeats"] + 1)
 SOLVER = "results/bin/bedFoam"
 # the bed behind the results, simulated or from its archive: the same for all presets

@@ -2,7 +2,7 @@
 """Simulate a case in restartable segments: settle without gas, then ramp the gas, or turn the drum, and run.
 
 usage: python scripts/run_dem.py results/short --end 5 --segment 0.25 --ranks 2
-       python scripts/run_dem.py results/short --end 5 --segment 0.25 --ranks 2 --start 3 --repeat 1
+       python scripts/run_dem.py results/short --end 5 --segment 0.25 --ranks auto --start 3 --repeat 1
 
 The state is in results/<case>/dem/<stamp of the inputs>/. Killed at any time, the same command goes on from
 the last finished segment; other inputs get a folder of their own, so earlier results stay. At the end it
@@ -15,7 +15,10 @@ velocity a little, and goes on to --end in results/<case>/repeats/<N>/, which ge
 import argparse
 from pathlib import Path
 
+from bedchain.case.rank_checks import cores_here
+from bedchain.dem.free_ranks import ranks_of
 from bedchain.dem.run import repeat_dem, run_dem
+from bedchain.dem.segments import read_parameters
 from bedchain.errors import report_user_errors
 from bedchain.lifetime import end_with_run
 
@@ -28,7 +31,10 @@ def main() -> None:
     parser.add_argument("folder", type=Path, help="results/<case>, with parameters.lig and caseParameters")
     parser.add_argument("--end", type=float, required=True, help="simulated time at the end [s]")
     parser.add_argument("--segment", type=float, required=True, help="simulated time of a segment [s]")
-    parser.add_argument("--ranks", type=int, default=1, help="MPI ranks (default 1)")
+    parser.add_argument(
+        "--ranks", default="1", help="MPI ranks, or auto: as many as cores are free (default 1)"
+    )
+    parser.add_argument("--cores", type=int, default=cores_here(), help="cores that auto may take")
     parser.add_argument("--repeat", type=int, metavar="N", help="make the N-th repeat of the finished run")
     parser.add_argument("--start", type=float, help="where a repeat starts [s], the end of a segment")
     given = parser.parse_args()
@@ -36,10 +42,11 @@ def main() -> None:
         parser.error("--repeat and --start belong together")
     end_with_run()
     with report_user_errors():
+        ranks = ranks_of(given.ranks, given.cores, read_parameters(given.folder / "parameters.lig"))
         if given.repeat is None:
-            run_dem(given.folder, given.end, given.segment, given.ranks)
+            run_dem(given.folder, given.end, given.segment, ranks)
         else:
-            repeat_dem(given.folder, given.start, given.end, given.segment, given.ranks, given.repeat)
+            repeat_dem(given.folder, given.start, given.end, given.segment, ranks, given.repeat)
 
 
 if __name__ == "__main__":

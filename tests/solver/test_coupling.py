@@ -43,19 +43,38 @@ def test_what_the_particles_get_the_gas_loses(make_bed):
     assert table["voidage_clips_1"].sum() == 0
 
 
-@pytest.mark.parametrize("ranks", [2, 4])
+@pytest.mark.parametrize("ranks", [2, 3, 4, 6])
 def test_ranks_agree_on_the_first_steps(make_bed, ranks):
-    alone, together = make_bed("alone"), make_bed("together")
+    # six gas cells along the width, or four
+    wide = {"bed": {"width_m": 0.03}, "particles": {"number": 450}} if ranks % 3 == 0 else {}
+    alone, together = make_bed("alone", **wide), make_bed("together", **wide)
     run_dem(alone, 0.008, 0.008, 1)
     # Both begin with the bed that settled on one rank
     settled = next(alone.glob("dem/*/settled"))
-    shutil.copytree(settled, together / "dem" / input_stamp(input_files(together), ranks) / "settled")
+    shutil.copytree(settled, together / "dem" / input_stamp(input_files(together)) / "settled")
     run_dem(together, 0.008, 0.008, ranks)
     one, several = series(alone), series(together)
     np.testing.assert_allclose(
         several["pressure_drop_Pa"][0], one["pressure_drop_Pa"][0], rtol=SOLVER_TOLERANCE
     )
     np.testing.assert_allclose(several["mean_height_m"], one["mean_height_m"], rtol=SOLVER_TOLERANCE)
+
+
+def test_a_bed_begun_on_two_ranks_ends_on_three(make_bed):
+    folder = make_bed("bed", bed={"width_m": 0.03}, particles={"number": 450})
+    run_dem(folder, 0.02, 0.02, 2)
+    begun = series(folder)
+    run_dem(folder, 0.04, 0.02, 3)
+    table = series(folder)
+    assert len(list(folder.glob("dem/*"))) == 1
+    assert len(list(folder.glob("dem/*/segment_0002/gas/processor*"))) == 3
+    assert table.iloc[: len(begun)].equals(begun)
+    assert table["exchange_error_1"].max() < ROUND_OFF
+    assert table["volume_balance_1"].max() < VOLUME_BALANCE
+    assert (table["particles_1"] == 450).all()
+    # the gas goes on with its last field: no jump of its pressure over the seam
+    drop, seam = table["pressure_drop_Pa"].to_numpy(), len(begun)
+    assert abs(drop[seam] - drop[seam - 1]) < 3 * np.abs(np.diff(drop[seam - 2 : seam])).max() + 1
 
 
 def test_ranks_give_the_same_statistics_later(make_bed):

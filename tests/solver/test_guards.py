@@ -60,7 +60,7 @@ def faulty_bed(make_bed, settled_once):
 
 def run_of(folder, ranks):
     """The run that the command line makes of a folder."""
-    stamp = input_stamp(stage.input_files(folder), ranks)
+    stamp = input_stamp(stage.input_files(folder))
     return SegmentedRun(folder, folder, stamp, ranks, 0, round(END_S / STEP_S), SETTLED)
 
 

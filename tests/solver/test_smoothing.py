@@ -57,7 +57,7 @@ def after_one_exchange(make_bed, settled_once, length, cell, ranks):
         run={"ranks": ranks},
         time={"gas_step_s": STEP, "frame_interval_s": STEP, "segment_s": STEP},
     )
-    run = SegmentedRun(folder, folder, input_stamp(input_files(folder), ranks), ranks, 0, 1, SETTLED)
+    run = SegmentedRun(folder, folder, input_stamp(input_files(folder)), ranks, 0, 1, SETTLED)
     if not (settled_once / SETTLED).exists():
         settle(replace(run, ranks=1))
         shutil.copytree(run.state / SETTLED, settled_once / SETTLED)

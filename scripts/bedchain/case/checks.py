@@ -12,6 +12,7 @@ from bedchain.case import (  # noqa: F401
     mark_checks,
     network_checks,
     parcel_checks,
+    rank_checks,
     scene_checks,
     size_checks,
     stage_checks,

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Checks of the gas: its cells, its step, its density, and the ranks that share it."""
+"""Checks of the gas: its cells, its step and its density."""
 
 import math
 from collections.abc import Iterator
@@ -13,7 +13,7 @@ from bedchain.physics.packing import (
     settled_height,
     slab_voidage,
 )
-from bedchain.physics.whole_numbers import is_multiple, nearest_multiple, ratio, rounded_down
+from bedchain.physics.whole_numbers import is_multiple, nearest_multiple, rounded_down
 
 COURANT_MAX = 1.0  # a gas parcel crosses at most one cell a step
 ADDED_MASS_MAX = 0.05  # of a particle's mass: the equations leave out the gas that a particle accelerates
@@ -48,15 +48,6 @@ def gas_cells_fit(cell: float, width: float, height: float, diameter: float) -> 
             near = length / max(1, round(length / cell))
             wrong = f"{cell:g} m does not divide bed.{name} ({length:g} m)"
             yield "gas.cell_size_m", wrong, f"take {near:.6g}, or another bed.{name}"
-
-
-@reads("run.ranks", "gas.cell_size_m", "bed.width_m")
-def ranks_share_gas_evenly(ranks: int, cell: float, width: float) -> Iterator[Finding]:
-    """Refuse ranks that do not divide the gas cells along the width evenly."""
-    cells = ratio(width, cell)
-    if cells.denominator == 1 and cells % ranks:
-        wrong = f"{ranks} ranks cannot share {cells} gas cells along the width evenly"
-        yield "run.ranks", wrong, "take run.ranks: 1, or another gas.cell_size_m"
 
 
 @reads("time.dem_step_s", "time.gas_step_s", "time.frame_interval_s", "time.ramp_s", "time.end_s")

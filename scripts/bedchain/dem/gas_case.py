@@ -37,10 +37,13 @@ def prepare_gas(gas: Path, parameters: Path, previous: Path, settings: dict[str,
         for name, value in settings.items()
     )
     (gas / "segmentParameters").write_text("".join(lines), encoding="utf-8")
-    if not (previous / "gas").exists():
-        run_logged(["blockMesh", "-case", str(gas)], gas / "mesh.log")
-        if settings["ranks"] != 1:
-            run_logged(["decomposePar", "-case", str(gas)], gas / "mesh.log")
+    ranks = int(str(settings["ranks"]))
+    if (previous / "gas").exists():
+        cut_anew(gas, ranks)
+        return
+    run_logged(["blockMesh", "-case", str(gas)], gas / "mesh.log")
+    if ranks > 1:
+        run_logged(["decomposePar", "-case", str(gas)], gas / "mesh.log")
 
 
 def copy_last_state(source: Path, target: Path) -> None:
@@ -75,14 +78,25 @@ def redistribute(gas: Path, source: Path, ranks: int) -> None:
     ranks : int
         MPI ranks.
     """
-    parts = list(gas.glob("processor*"))
-    if max(len(parts), 1) == ranks:
+    if cut_in(gas) == ranks:
         return
     shutil.copy(source / "caseParameters", gas)
     settings = (source / "segmentParameters").read_text(encoding="utf-8")
     settings = re.sub(r"^ranks .*$", f"ranks {ranks};", settings, flags=re.MULTILINE)
     (gas / "segmentParameters").write_text(settings, encoding="utf-8")
-    if parts:
+    cut_anew(gas, ranks)
+
+
+def cut_in(gas: Path) -> int:
+    """Parts that the last fields of a case are cut into, one for each MPI rank that wrote them [1]."""
+    return max(1, len(list(gas.glob("processor*"))))
+
+
+def cut_anew(gas: Path, ranks: int) -> None:
+    """Put the last fields of a case together and cut them for other ranks, by its ``segmentParameters``."""
+    if cut_in(gas) == ranks:
+        return
+    if parts := list(gas.glob("processor*")):
         run_logged(["reconstructPar", "-case", str(gas), "-latestTime"], gas / "mesh.log")
         for part in parts:
             shutil.rmtree(part)

@@ -6,6 +6,7 @@ from pathlib import Path
 from tqdm import tqdm
 
 from bedchain.case.parcels import parcel_case
+from bedchain.case.rank_checks import most_ranks
 from bedchain.case.schema import Case
 from bedchain.errors import UserError
 from bedchain.meter import physical_memory_bytes
@@ -41,7 +42,7 @@ def memory_needs(case: Case) -> dict[str, float]:
     frames = float(ratio(learn_s, case["time"]["frame_interval_s"]))
     distances = frames**2 * DISTANCE_BYTES if "recurrence" in case["chain"]["models"] else 0.0
     return {
-        "the simulation": solver_bytes(number, case["run"]["ranks"]) + gas_cells * GAS_CELL_BYTES,
+        "the simulation": solver_bytes(number, most_ranks(case)) + gas_cells * GAS_CELL_BYTES,
         "learning the chains": JOB_BYTES + number * frames * MOVE_BYTES + distances,
     }
 

@@ -108,7 +108,7 @@ def run_dem(folder: Path, end_s: float, segment_s: float, ranks: int) -> None:
     end_s, segment_s : float
         End, and length of a segment [s].
     ranks : int
-        MPI ranks.
+        MPI ranks; finished segments may have had others.
 
     Raises
     ------
@@ -116,7 +116,7 @@ def run_dem(folder: Path, end_s: float, segment_s: float, ranks: int) -> None:
         A time or a file is wrong, another process is at work, or a solver stops.
     """
     end, length = whole_steps(folder, {"--end": end_s, "--segment": segment_s})
-    run = SegmentedRun(folder, folder, input_stamp(input_files(folder), ranks), ranks, 0, end, SETTLED)
+    run = SegmentedRun(folder, folder, input_stamp(input_files(folder)), ranks, 0, end, SETTLED)
     with locked_folder(folder / "dem"):
         advance(run, length, lambda: settle(run))
 
@@ -157,9 +157,7 @@ def repeat_dem(
     except DataError as error:
         raise UserError(f"{error}\n{retract(folder / 'dem.json', segment)}") from error
     results = repeat_folder(folder, number)
-    stamp = input_stamp(
-        [*input_files(folder), DECKS / DECK, segment / RESTART], ranks, f"{number} {kick_m_s}"
-    )
+    stamp = input_stamp([*input_files(folder), DECKS / DECK, segment / RESTART], f"{number} {kick_m_s}")
     run = SegmentedRun(folder, results, stamp, ranks, start, end, PERTURBED)
     seed = kick_seed(int(read_parameters(folder / "parameters.lig")["seed"]), number)
 

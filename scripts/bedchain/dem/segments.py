@@ -106,19 +106,17 @@ class Segment:
         return hashlib.sha256(json.dumps(known, sort_keys=True).encode()).hexdigest() if known else ""
 
 
-def input_stamp(files: list[Path], ranks: int, numbers: str = "") -> str:
-    """Name of a set of inputs: equal bytes in equal order on equally many ranks give the same run.
+def input_stamp(files: list[Path], numbers: str = "") -> str:
+    """Name of a set of inputs: equal bytes in equal order give the same run, on any number of ranks.
 
     Parameters
     ----------
     files : list of Path
         Inputs of the run.
-    ranks : int
-        MPI ranks.
     numbers : str
         Other inputs, as text.
     """
-    digest = hashlib.sha256(f"{ranks} ranks{numbers}".encode())
+    digest = hashlib.sha256(numbers.encode())
     for file in files:
         digest.update(hashlib.sha256(file.read_bytes()).digest())
     return digest.hexdigest()[:STAMP_DIGITS]

@@ -29,6 +29,7 @@ NAMES = {
     "step_is_stable", "steps_nest", "windows_lie_in_time",
     "cells_hold_parcels", "gas_cells_hold_parcels", "parcels_are_under_gas", "parcels_can_lose_the_energy",
     "parcels_fit", "two_fluids_are_flat_and_have_their_drag_law",
+    "slabs_are_wider_than_a_step_of_the_list",
 }  # fmt: skip
 LIST_CHECKS = (
     "from bedchain.case.check_registry import CHECKS; print(*[check.__name__ for _, check in CHECKS])"

@@ -49,16 +49,15 @@ def test_a_stamp_changes_with_every_input(tmp_path):
     for file in files:
         file.write_text(file.name)
     stamps = [
-        segments.input_stamp(files, 2),
-        segments.input_stamp(files, 1),
-        segments.input_stamp(files[::-1], 2),
-        segments.input_stamp(files, 2, "kick"),
+        segments.input_stamp(files),
+        segments.input_stamp(files[::-1]),
+        segments.input_stamp(files, "kick"),
     ]
     files[0].write_text("another")
-    stamps.append(segments.input_stamp(files, 2))
-    assert len(set(stamps)) == 5
+    stamps.append(segments.input_stamp(files))
+    assert len(set(stamps)) == 4
     files[0].write_text("deck")
-    assert segments.input_stamp(files, 2) == stamps[0]
+    assert segments.input_stamp(files) == stamps[0]
 
 
 def test_parameters_are_numbers_and_words(run, tmp_path):

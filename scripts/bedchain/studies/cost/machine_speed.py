@@ -18,6 +18,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from bedchain.case.parcels import parcel_case
+from bedchain.case.rank_checks import most_ranks
 from bedchain.case.schema import Case
 from bedchain.dem.segments import read_parameters
 from bedchain.files import path_inside
@@ -114,7 +115,7 @@ def bed_of(case: Case) -> BedSize:
     deep = max(1, round(bed["thickness_m"] / cell)) if bed["layers"] == "many" else 1
     cells = int(ratio(bed["width_m"], cell) * ratio(bed["height_m"], cell)) * deep
     coupled = case["gas"]["model"] != "none"
-    number, ranks = case["particles"]["number"], case["run"]["ranks"]
+    number, ranks = case["particles"]["number"], most_ranks(case)
     return BedSize(number, ranks, cells if coupled else 0, time_["dem_step_s"], time_["gas_step_s"])
 
 

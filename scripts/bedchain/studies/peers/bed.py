@@ -136,9 +136,9 @@ def fluidized_bed(case_file: Path, folder: Path, solver: Path, start_s: float) -
     parameters = folder / "parameters.lig"
     parameters.write_text(liggghts_text(bed.parameters), encoding="utf-8")
     includes = sorted((DECKS / "include").glob("*.in"))
-    settled = folder / f"{SETTLED}_{input_stamp([parameters, DECKS / 'in.settle', *includes], 1)}"
+    settled = folder / f"{SETTLED}_{input_stamp([parameters, DECKS / 'in.settle', *includes])}"
     moving = (
-        folder / f"{MOVING}_{input_stamp([parameters, DECKS / 'in.fluidize', *includes], 1, f'{start_s:g}')}"
+        folder / f"{MOVING}_{input_stamp([parameters, DECKS / 'in.fluidize', *includes], f'{start_s:g}')}"
     )
     if not settled.exists():
         with atomic_folder(settled) as part:

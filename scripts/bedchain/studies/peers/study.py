@@ -72,7 +72,7 @@ def duration_for(peer: Peer, bed: PeerBed, duration_s: float, longest_s: float) 
 def record_file(folder: Path, bed: PeerBed, peer: Peer, duration_s: float, repeat: int) -> Path:
     """File of a run, named by all that the run depends on."""
     files = [file for item in peer.files for file in ([item] if item.is_file() else sorted(item.rglob("*")))]
-    stamp = input_stamp([file for file in files if file.is_file()], peer.ranks)
+    stamp = input_stamp([file for file in files if file.is_file()], f"{peer.ranks} ranks")
     name = re.sub(r"\W+", "_", peer.name.lower())
     stem = f"{name}_{bed.gas_steps(duration_s)}_{bed.stamp}_{stamp}_{repeat}"
     return folder / bed.name / "runs" / f"{stem}.json"

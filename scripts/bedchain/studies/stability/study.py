@@ -76,7 +76,7 @@ def _send(sender: Connection, work: Callable[[], Verdict]) -> None:
 
 def record_file(folder: Path, setting: StabilitySetting, sources: list[Path]) -> Path:
     """File of a verdict, named by all that the verdict depends on."""
-    stamp = input_stamp(sources, 1, setting.inputs)
+    stamp = input_stamp(sources, setting.inputs)
     return folder / KEPT / setting.group / f"{slug(setting)}_{stamp}.json"
 
 
