@@ -8,9 +8,11 @@
 import atexit
 import logging
 import sys
+from contextlib import redirect_stderr
+from io import StringIO
 from pathlib import Path
 
-from snakemake.cli import get_argument_parser
+from snakemake.cli import parse_args
 
 sys.path.insert(0, f"{workflow.basedir}/scripts")
 
@@ -25,7 +27,9 @@ from bedchain.workflow import (
     preset_name,
     quote_interpreter,
     reference_or_exit,
+    slurm_or_exit,
     targets_or_exit,
+    time_limits_or_exit,
     words_or_exit,
 )
 
@@ -38,6 +42,8 @@ if TYPED or workflow.remote_exec:  # its jobs end with it, however it ends
 if TYPED:
     options_or_exit(sys.argv[1:], workflow.resource_settings.cores, workflow.resource_settings.nodes)
 
+# threads of a rule that must be alone on its machine: all of this one; on a cluster its job takes a whole node
+ALONE = workflow.resource_settings.cores or 1
 WORDS = words_or_exit(config, workflow.config_settings.config_args)  # of --config
 NAME = WORDS.get("case", "short")
 PRESET = preset_name(WORDS)
@@ -99,13 +105,24 @@ if WORDS.get("studies", True):
 
 # A word that nothing reads ends here, before anything is planned. Snakemake itself gets the targets later.
 if TYPED and WORDS.get("studies", True):
+    with redirect_stderr(StringIO()):  # it names the profile again
+        TYPED_LINE = parse_args(sys.argv[1:])[1]
     targets_or_exit(
-        get_argument_parser().parse_known_args(sys.argv[1:])[0].targets,
+        TYPED_LINE.targets,
         WORDS,
         [rule.name for rule in workflow.rules],
         {NAME, FOLDER, *(["paper"] if WITH_PAPER else [])},
         CASE,
     )
+    if TYPED_LINE.executor == "slurm" and not TYPED_LINE.dryrun:
+        slurm_or_exit()
+    if TYPED_LINE.executor not in (None, "local") and KIND == "bed" and not (REFERENCE or FRAMES):
+        first_try = dict(wildcards={"repeat": "1"}, input=[], attempt=1)
+        limits_min = {
+            name: workflow.get_rule(name).expand_resources(**first_try)["runtime"]
+            for name in ("run_dem", "repeat_dem")
+        }
+        time_limits_or_exit(CASE, limits_min)
 
 
 # kill or the end of a terminal ends all jobs within seconds, as Ctrl-C does.

@@ -15,10 +15,12 @@ export LC_ALL=C.UTF-8
 export WM_PROJECT_DIR=/usr/share/openfoam
 
 # Open MPI inside one machine: shared memory only, no remote shell, no SLURM allocation, ranks free to move between cores
-# (two jobs side by side would otherwise be bound to the same one).
-export OMPI_MCA_pml=ob1 OMPI_MCA_btl=vader,self OMPI_MCA_btl_vader_single_copy_mechanism=none
-export OMPI_MCA_plm=isolated OMPI_MCA_ras=^slurm OMPI_MCA_oob_tcp_if_include=lo
-export OMPI_MCA_hwloc_base_binding_policy=none OMPI_MCA_rmaps_base_oversubscribe=1
+# (two jobs side by side would otherwise be bound to the same one). Not where another launcher starts ranks on several nodes.
+if [ -z "${BEDCHAIN_LAUNCHER-}" ]; then
+    export OMPI_MCA_pml=ob1 OMPI_MCA_btl=vader,self OMPI_MCA_btl_vader_single_copy_mechanism=none
+    export OMPI_MCA_plm=isolated OMPI_MCA_ras=^slurm OMPI_MCA_oob_tcp_if_include=lo
+    export OMPI_MCA_hwloc_base_binding_policy=none OMPI_MCA_rmaps_base_oversubscribe=1
+fi
 if [ "$(id -u)" -eq 0 ]; then
     export OMPI_ALLOW_RUN_AS_ROOT=1 OMPI_ALLOW_RUN_AS_ROOT_CONFIRM=1
 fi

@@ -1,10 +1,12 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 # The bed: simulated by LIGGGHTS and OpenFOAM in restartable segments, or out of its archive; its frames.
 from bedchain.dem.repeats import repeat_ranks
+from bedchain.studies.cost.job_limits import job_limits
 from bedchain.workflow import frame_files, solver_values
 
 DRUM = "liggghts_inputs/drum"
 SCENE = ["bed", "particles", "contact", "gas", "drum"]
+LIMITS = job_limits(CASE)  # of a cluster's jobs
 
 
 rule build_solver:
@@ -64,6 +66,8 @@ rule run_dem:
     conda:
         "../envs/python.yaml"
     threads: RANKS
+    resources:
+        **LIMITS["bed"],
     params:
         **pick(CASE, "time.end_s", "time.segment_s"),
         folder=subpath(output.dem, parent=True),
@@ -92,6 +96,8 @@ rule repeat_dem:
     conda:
         "../envs/python.yaml"
     threads: repeat_ranks(RANKS, len(REPEATS))
+    resources:
+        **LIMITS["repeat"],
     params:
         **pick(CASE, "comparison.start_s", "comparison.end_s", "time.segment_s"),
         folder=subpath(input.dem, parent=True),
@@ -114,6 +120,8 @@ rule parse_dumps:
         f"{BENCHMARKS}/{{run}}parse_dumps.tsv"
     wildcard_constraints:
         run="(repeats/[0-9]+/)?",
+    group:
+        "chains"
     conda:
         "../envs/python.yaml"
     params:
@@ -131,6 +139,8 @@ rule measure_mixing:
         mixing=f"{BED}/repeats/{{repeat}}/mixing.csv",
     log:
         f"{LOGS}/measure_mixing_{{repeat}}.log",
+    group:
+        "chains"
     conda:
         "../envs/python.yaml"
     params:
@@ -159,6 +169,8 @@ if REFERENCE:
             f"{LOGS}/unpack_reference.log",
         benchmark:
             f"{BENCHMARKS}/unpack_reference.tsv"
+        group:
+            "chains"
         conda:
             "../envs/python.yaml"
         script:

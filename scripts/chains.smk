@@ -19,6 +19,8 @@ rule choose_chain:
         f"{LOGS}/choose_chain.log",
     benchmark:
         f"{BENCHMARKS}/choose_chain.tsv"
+    group:
+        "chains"
     conda:
         "../envs/python.yaml"
     params:
@@ -38,6 +40,8 @@ rule assign_cells:
         f"{LOGS}/assign_cells.log",
     benchmark:
         f"{BENCHMARKS}/assign_cells.tsv"
+    group:
+        "chains"
     conda:
         "../envs/python.yaml"
     params:
@@ -59,8 +63,12 @@ rule build_transitions:
         f"{LOGS}/build_transitions_{{model}}.log",
     benchmark:
         f"{BENCHMARKS}/build_transitions_{{model}}.tsv"
+    group:
+        "chains"
     conda:
         "../envs/python.yaml"
+    resources:
+        mem_mb=LIMITS["chains"]["mem_mb"],
     params:
         **pick(CASE, "learning", "chain.lag_s", "chain.estimator"),
         options=lambda wildcards: OPTIONS[wildcards.model],
@@ -80,8 +88,12 @@ rule run_chain:
         f"{LOGS}/run_chain_{{model}}.log",
     benchmark:
         f"{BENCHMARKS}/run_chain_{{model}}.tsv"
+    group:
+        "chains"
     conda:
         "../envs/python.yaml"
+    resources:
+        mem_mb=LIMITS["chains"]["mem_mb"],
     params:
         **pick(CASE, "comparison.start_s", "comparison.end_s", "mixing", "chain.estimator", "chain.seed"),
         **pick(CASE, "figures.batch_height_m", "figures.moments_s"),
@@ -106,6 +118,8 @@ rule compare_mixing:
         f"{LOGS}/compare_mixing.log",
     benchmark:
         f"{BENCHMARKS}/compare_mixing.tsv"
+    group:
+        "chains"
     conda:
         "../envs/python.yaml"
     params:
@@ -129,6 +143,8 @@ rule measure_residence:
         f"{LOGS}/measure_residence.log",
     benchmark:
         f"{BENCHMARKS}/measure_residence.tsv"
+    group:
+        "chains"
     conda:
         "../envs/python.yaml"
     params:
@@ -151,6 +167,8 @@ rule measure_segregation:
         f"{LOGS}/measure_segregation.log",
     benchmark:
         f"{BENCHMARKS}/measure_segregation.tsv"
+    group:
+        "chains"
     conda:
         "../envs/python.yaml"
     params:
@@ -172,6 +190,8 @@ rule list_left_out:
         left_out=f"{RESULTS}/left_out.csv",
     log:
         f"{LOGS}/list_left_out.log",
+    group:
+        "chains"
     conda:
         "../envs/python.yaml"
     params:
@@ -197,6 +217,8 @@ rule discuss_errors:
     priority: 1  # long: the short ones fit beside its end
     conda:
         "../envs/python.yaml"
+    resources:
+        mem_mb=LIMITS["chains"]["mem_mb"],
     params:
         **pick(CASE, "cells", "mixing", "discussion", "chain.lag_s", "chain.estimator"),
         learning=CASE["learning"],
@@ -222,6 +244,8 @@ rule diagnose_chains:
     priority: 1  # long: the short ones fit beside its end
     conda:
         "../envs/python.yaml"
+    resources:
+        mem_mb=LIMITS["chains"]["mem_mb"],
     params:
         **pick(CASE, "mixing", "chain.estimator", "chain.seed"),
         options=OPTIONS,
@@ -245,7 +269,9 @@ rule time_models:
         f"{LOGS}/time_models.log",
     conda:
         "../envs/python.yaml"
-    threads: workflow.cores or 1
+    threads: ALONE
+    resources:
+        slurm_extra="--exclusive",
     params:
         **pick(CASE, "mixing", "chain.estimator", "chain.seed"),
         options=OPTIONS,
@@ -275,6 +301,8 @@ rule make_film:
         f"{BENCHMARKS}/make_film.tsv"
     conda:
         "../envs/python.yaml"
+    resources:
+        mem_mb=LIMITS["chains"]["mem_mb"],
     params:
         **pick(CASE, "comparison.start_s", "comparison.end_s", "mixing.split_x_m", "chain.seed"),
         **pick(SIMULATED, "particles.diameter_m", "bed.thickness_m", "gas.cell_size_m"),
@@ -299,6 +327,8 @@ rule write_table:
         tex=f"{RESULTS}/table1.tex",
     log:
         f"{LOGS}/write_table.log",
+    group:
+        "figures"
     conda:
         "../envs/python.yaml"
     params:
@@ -320,6 +350,8 @@ rule write_agreement:
         table=f"{RESULTS}/agreement.csv",
     log:
         f"{LOGS}/write_agreement.log",
+    group:
+        "figures"
     conda:
         "../envs/python.yaml"
     params:
@@ -338,6 +370,8 @@ rule write_provenance:
         provenance=f"{RESULTS}/provenance.json",
     log:
         f"{LOGS}/write_provenance.log",
+    group:
+        "figures"
     conda:
         "../envs/python.yaml"
     params:

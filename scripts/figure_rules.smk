@@ -31,6 +31,8 @@ def figure_rule(plot, row):
             f"{LOGS}/{plot}_{row['name']}.log" if "wildcards" in row else f"{LOGS}/{plot}.log",
         wildcard_constraints:
             **row.get("wildcards", {}),
+        group:
+            "figures"
         conda:
             "../envs/python.yaml"
         params:

@@ -33,6 +33,8 @@ rule write_provenance:
         provenance=f"{RESULTS}/provenance.json",
     log:
         f"{LOGS}/write_provenance.log",
+    group:
+        "figures"
     conda:
         "../envs/python.yaml"
     params:

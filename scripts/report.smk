@@ -22,6 +22,8 @@ rule write_report:
         report=REPORT,
     log:
         f"{LOGS}/write_report.log",
+    group:
+        "figures"
     conda:
         "../envs/python.yaml"
     params:

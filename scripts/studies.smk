@@ -68,7 +68,9 @@ rule compare_peers:
         "logs/compare_peers.log",
     conda:
         "../envs/python.yaml"
-    threads: workflow.cores or 1
+    threads: ALONE
+    resources:
+        slurm_extra="--exclusive",
     params:
         folder=subpath(output.table, parent=True),
         options=peers_or_exit(WORDS.get("peers")),  # quoted
@@ -191,6 +193,8 @@ rule score_models:
         f"{BENCHMARKS}/score_models.tsv"
     conda:
         "../envs/python.yaml"
+    resources:
+        mem_mb=LIMITS["chains"]["mem_mb"],
     params:
         **pick(CASE, "cells", "chain.lag_s", "chain.estimator", "chain.seed", "mixing"),
         **pick(SIMULATED, "particles.diameter_m", "figures.batch_height_m", "figures.moments_s"),
@@ -225,7 +229,9 @@ rule score_presets:
         f"{BENCHMARKS}/score_presets.tsv"
     conda:
         "../envs/python.yaml"
-    threads: workflow.cores or 1
+    threads: ALONE
+    resources:
+        slurm_extra="--exclusive",
     params:
         case=CASE,
     script:
@@ -268,7 +274,9 @@ rule study_ladder:
         f"{BENCHMARKS}/study_ladder.tsv"
     conda:
         "../envs/python.yaml"
-    threads: workflow.cores or 1
+    threads: ALONE
+    resources:
+        slurm_extra="--exclusive",
     params:
         case=CASE,
     script:
@@ -323,6 +331,31 @@ rule tradeoff:
         expand(f"{FIGURES}/{{name}}{{form}}", name=TRADEOFF_PLOTS, form=FORMS.values()),
 
 
+# Hours for a large bed, so no edit of a script reruns it; its state is kept in segments, as that of run_dem.
+rule run_variant:
+    input:
+        case=ancient(f"cases/{NAME}/case.yaml"),
+        solver=rules.run_dem.input.solver,
+        decks=rules.run_dem.input.decks,
+        blocks=rules.run_dem.input.blocks,
+        gas=rules.run_dem.input.gas,
+    output:
+        record=f"{RESULTS}/tradeoff/{{variant}}/variant.json",
+    log:
+        f"{LOGS}/run_variant_{{variant}}.log",
+    wildcard_constraints:
+        variant=r"[\w.-]+",
+    conda:
+        "../envs/python.yaml"
+    resources:
+        **LIMITS["variant"],
+    params:
+        **solver_values(CASE),
+        folder=subpath(output.record, parent=True),
+    shell:
+        "python scripts/run_variant.py {input.case} {params.folder} 2>&1 | tee {log} >&2"
+
+
 # Alone on the machine, since it measures times.
 rule study_tradeoff:
     input:
@@ -334,11 +367,7 @@ rule study_tradeoff:
         repeats=expand(rules.measure_mixing.output.mixing, repeat=REPEATS),
         # an archive keeps the repeats' curves, not their positions
         moving=expand(f"{BED}/repeats/{{repeat}}/trajectory.npy", repeat=[] if REFERENCE else REPEATS),
-        # the variants are simulated by the same solvers
-        solver=rules.run_dem.input.solver if VARIANTS else [],
-        decks=rules.run_dem.input.decks if VARIANTS else [],
-        blocks=rules.run_dem.input.blocks if VARIANTS else [],
-        gas=rules.run_dem.input.gas if VARIANTS else [],
+        variants=expand(rules.run_variant.output.record, variant=VARIANTS),
     output:
         table=f"{RESULTS}/tradeoff.csv",
         presets=f"{RESULTS}/presets.yaml",
@@ -348,7 +377,9 @@ rule study_tradeoff:
         f"{BENCHMARKS}/study_tradeoff.tsv"
     conda:
         "../envs/python.yaml"
-    threads: workflow.cores or 1
+    threads: ALONE
+    resources:
+        slurm_extra="--exclusive",
     params:
         **pick(CASE, "cells", "chain.lag_s", "chain.models", "chain.estimator", "chain.seed", "mixing"),
         learning=CASE["learning"],
@@ -356,8 +387,7 @@ rule study_tradeoff:
         folder=subpath(output.table, parent=True),
         variants=" ".join(VARIANTS),
     shell:
-        "python scripts/study_tradeoff.py {input.case} {params.folder} --log {log} --at-once {threads}"
-        " --variants {params.variants}"
+        "python scripts/study_tradeoff.py {input.case} {params.folder} --log {log} --variants {params.variants}"
 
 
 # Tables and pictures of the README files, from the csv files beside them: snakemake --cores 2 readme. The csv files of

@@ -3,8 +3,8 @@
 
 usage: python scripts/study_tradeoff.py cases/short/case.yaml results/short --variants base drag_koch_hill
 
-The folder holds the case's run (trajectory, bed_series.csv) and its repeats. What was finished is kept in
-<folder>/tradeoff/: the same command goes on after a stop.
+The folder holds the case's run (trajectory, bed_series.csv), its repeats, and variants of run_variant.py in
+<folder>/tradeoff/. What was finished is kept there: the same command goes on after a stop.
 """
 
 import argparse
@@ -42,8 +42,8 @@ COSTS = ["learn_s", "run_s", "cost_s", "memory_mb"]
 VALIDATION = ["validation_error_1", "validation_ci_low_1", "validation_ci_high_1"]
 
 
-def study_tradeoff(case_file: Path, folder: Path, variants: list[str], at_once: int = 2) -> None:
-    """Measure chains of many settings, and beds simulated in many ways, against one bed and its repeats.
+def study_tradeoff(case_file: Path, folder: Path, variants: list[str]) -> None:
+    """Measure chains of many settings, and variants that were simulated, against one bed and its repeats.
 
     Parameters
     ----------
@@ -52,14 +52,13 @@ def study_tradeoff(case_file: Path, folder: Path, variants: list[str], at_once: 
         ``trajectory.npy``, ``trajectory.json``, ``bed_series.csv`` and ``repeats/`` of the case; gets
         ``tradeoff.csv``, ``presets.yaml``, and ``tradeoff/`` with what a stopped study goes on from.
     variants : list of str
-        Names of `bed_variants.bed_variants` to simulate.
-    at_once : int
-        Simulations side by side.
+        Names of `bed_variants.bed_variants` that run_variant.py has simulated.
 
     Raises
     ------
     UserError, DataError
-        A window or a repeat lacks frames; no chain could be validated; there is no such variant.
+        A window or a repeat lacks frames; no chain could be validated; there is no such variant, or it is not
+        simulated.
     """
     case = with_choice(load_case(case_file), folder / "choice.csv")
     known = bed_variants(case)
@@ -74,8 +73,8 @@ def study_tradeoff(case_file: Path, folder: Path, variants: list[str], at_once: 
     table["preset"] = [
         " ".join(name for name, row in chosen.items() if row == at) for at in table.index
     ]  # fmt: skip
-    beds = simulated_beds.simulate_all(
-        case_file, [known[name] for name in variants], folder / "tradeoff", bench.reference, at_once
+    beds = simulated_beds.measure_all(
+        [known[name] for name in variants], folder / "tradeoff", bench.reference
     )
     table = pd.concat([table, pd.DataFrame(beds)], ignore_index=True) if beds else table
     write_csv(
@@ -136,14 +135,15 @@ def main() -> None:
     )
     parser.add_argument("case", type=Path, help="the case file")
     parser.add_argument("folder", type=Path, help="results/<case>")
-    parser.add_argument("--variants", nargs="*", default=[], metavar="NAME", help="beds to simulate")
-    parser.add_argument("--at-once", type=int, default=2, metavar="N", help="of them side by side")
+    parser.add_argument(
+        "--variants", nargs="*", default=[], metavar="NAME", help="beds that run_variant.py has simulated"
+    )
     parser.add_argument("--log", type=Path, default=Path("study_tradeoff.log"), help="log file")
     given = parser.parse_args()
     folder = given.folder
     inputs = [*folder.glob("**/bed_series.csv"), *folder.glob("**/mixing.csv"), *folder.glob("trajectory.*")]
     with stage(given.log), known_files(inputs, [folder / "tradeoff.csv"]):
-        study_tradeoff(given.case, given.folder, given.variants, given.at_once)
+        study_tradeoff(given.case, given.folder, given.variants)
 
 
 if __name__ == "__main__":

@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Words of ./run and snakemake that nothing would read are refused before anything is planned."""
 
+import os
 import shutil
 import subprocess
 
@@ -101,3 +102,44 @@ def test_snakemake_itself_refuses_what_it_would_ignore(tmp_path, words, message)
     (only,) = done.stderr.splitlines()
     assert done.returncode == 1 and only.startswith("error: ") and message in only
     assert done.stdout == "" and not (folder / "results").exists()
+
+
+@pytest.fixture
+def at_work(run, tmp_path):
+    """A ./run of the short case that has begun and waits, in a folder with a solver."""
+    (tmp_path / "results/bin").mkdir(parents=True)
+    (tmp_path / "results/bin/bedFoam").touch(0o755)
+    (tmp_path / "stub/snakemake").write_text('#!/bin/sh\necho begun\n[ -n "$AT_ONCE" ] || exec sleep 60\n')
+    process = subprocess.Popen(["./run", "--config", "case=short"], cwd=tmp_path, stdout=subprocess.PIPE)
+    assert process.stdout.readline() == b"begun\n"
+    yield lambda *words: subprocess.run(
+        ["./run", *words], cwd=tmp_path, capture_output=True, text=True, check=False,
+        env=os.environ | {"AT_ONCE": "yes"},
+    )  # fmt: skip
+    process.kill()
+    process.wait()
+
+
+@pytest.mark.parametrize(
+    "words",
+    [
+        ["--config", "case=short", "--dry-run"],
+        ["-n"],
+        ["estimate", "--config", "case=paper"],
+        ["verify", "-Ccase=paper"],
+    ],
+)
+def test_a_dry_run_and_another_case_go_beside_a_run(at_work, words):
+    outcome = at_work(*words)
+    assert outcome.returncode == 0 and outcome.stdout == "begun\n", outcome.stderr
+
+
+@pytest.mark.parametrize(
+    "words", [[], ["estimate", "--config", "case=short"], ["-Ccase=short", "preset=fast"]]
+)
+def test_the_same_case_is_refused_beside_its_run(at_work, words):
+    outcome = at_work(*words)
+    assert outcome.returncode == 1 and outcome.stdout == ""
+    assert outcome.stderr.endswith(
+        "run: another ./run of the case short is at work in this folder; wait for it or end it\n"
+    )

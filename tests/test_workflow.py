@@ -95,8 +95,8 @@ def test_an_estimate_makes_nothing_else(empty):
 
 def test_the_tradeoff_simulates_variants_only_of_what_is_simulated(with_archive, refused):
     jobs = set(plan(with_archive, "tradeoff").jobs)
-    assert jobs == TRADEOFF - {"plot_variants"} | {"unpack_reference"}
-    jobs = set(plan(with_archive, "tradeoff", reference="simulate", tradeoff={"dem": ["base"]}).jobs)
+    assert jobs == TRADEOFF - {"run_variant", "plot_variants"} | {"unpack_reference"}
+    jobs = set(plan(with_archive, "tradeoff", reference="simulate", tradeoff={"dem": "tolerance_1e-09"}).jobs)
     assert jobs == BED | TRADEOFF
     message = refused(with_archive, tradeoff={"dem": ["basis"]})
     assert "no variant basis; take of" in message and "base" in message

@@ -19,6 +19,7 @@ from bedchain.case.scene_checks import used_keys
 from bedchain.case.schema import Case, load_schema
 from bedchain.case.two_fluid import is_two_fluid
 from bedchain.chains.networks.page import chains_of, starts_and_exits
+from bedchain.command_line.cluster import check_slurm, check_time_limit
 from bedchain.command_line.peers import peers_options
 from bedchain.command_line.targets import check_options, check_targets
 from bedchain.command_line.words import as_typed, check_words
@@ -81,6 +82,19 @@ def targets_or_exit(
     """`check_targets`; on an error its message, and snakemake ends before any job."""
     with report_user_errors():
         check_targets(targets, words, rules, case_names(), folders, particle_free(case))
+
+
+def slurm_or_exit() -> None:
+    """`check_slurm`; on an error its message, and snakemake ends before any job."""
+    with report_user_errors():
+        check_slurm()
+
+
+def time_limits_or_exit(case: Case, limits_min: Mapping[str, int]) -> None:
+    """`check_time_limit` of rules by name; on an error its message, and snakemake ends before any job."""
+    with report_user_errors():
+        for rule, limit_min in limits_min.items():
+            check_time_limit(case, rule, limit_min)
 
 
 def peers_or_exit(option: object) -> str:

@@ -41,10 +41,10 @@ TABLES = {"write_table", "write_provenance", "discuss_errors", "write_report"}
 ALL = {"audit_scene"} | BED | CHAINS | FIGURES | TABLES
 # rules of the studies
 SCORES = {"score_models", "plot_pareto", "plot_best_mixing", "plot_autocorrelation"}
-TRADEOFF = {"study_tradeoff", "plot_tradeoff", "plot_variants"}
+TRADEOFF = {"run_variant", "study_tradeoff", "plot_tradeoff", "plot_variants"}
 
 # rules whose shell line an edit of their script does not run again
-STABLE = {"build_solver", "write_parameters", "run_dem", "repeat_dem"}
+STABLE = {"build_solver", "write_parameters", "run_dem", "repeat_dem", "run_variant"}
 
 ODD_NAME = "it's my & Ünï (1) #x;%+=,@!~[]*?<>|"  # all that the name of a folder may hold
 

@@ -10,7 +10,7 @@ from bedchain.case.variants import Variant
 from bedchain.dem.run import repeat_dem, run_dem
 from bedchain.measures.mixing import Splits
 from bedchain.studies.tradeoff.bed_variants import BedVariant, bed_variants
-from bedchain.studies.tradeoff.simulated_beds import PEAK_FILE, simulate_all
+from bedchain.studies.tradeoff.simulated_beds import PEAK_FILE, measure_all, simulate_bed
 from bedchain.trajectory.frames import Window
 from bedchain.trajectory.store import BedFiles
 from measure_mixing import measure_mixing
@@ -50,15 +50,19 @@ def test_variants_run_fail_and_are_not_run_again(bed, tmp_path):
         bed_variants(case)["friction_0.3"],
         BedVariant("contact", Variant("overlap", {"contact.largest_overlap_1": 1e-6})),
     ]
-    good, stopped = simulate_all(file, wanted, tmp_path / "tradeoff", bench.reference, at_once=2)
+    tradeoff = tmp_path / "tradeoff"
+    for bed_variant in wanted:
+        simulate_bed(file, bed_variant, tradeoff / bed_variant.variant.name)
+    good, stopped = measure_all(wanted, tradeoff, bench.reference)
     assert good["problem"] == "" and good["cost_s"] > 0 and LEAST_MB < good["memory_mb"] < MOST_MB
     for name in ("mixing", "density", "bed_height", "pressure_drop", "granular_temperature"):
         assert np.isfinite(good[f"{name}_floors_1"])
     assert abs(good["bed_height_error_m"]) < 0.1 * bench.reference.scalars["bed_height"][0]
     assert "overlap" in stopped["problem"] and "cost_s" not in stopped
-    state = tmp_path / "tradeoff" / "friction_0.3"
+    state = tradeoff / "friction_0.3"
     before = {path: path.stat().st_mtime_ns for path in (state / "dem").rglob("*/*") if path.is_file()}
-    (again,) = simulate_all(file, wanted[:1], tmp_path / "tradeoff", bench.reference, at_once=1)
+    simulate_bed(file, wanted[0], state)
+    (again,) = measure_all(wanted[:1], tradeoff, bench.reference)
     assert {path: path.stat().st_mtime_ns for path in before} == before
     # its memory, too, which a finished run no longer shows
     assert (state / PEAK_FILE).exists()

@@ -227,10 +227,9 @@ def test_figures_of_the_study_are_drawn(walkers, tmp_path):
         plot_variants(walkers.folder / "tradeoff.csv", outputs(tmp_path / "b", "b"))
     case = load_case(walkers.case)
     bench, _ = stage.opened(case, walkers.folder)
-    rows = simulated_beds.simulate_all(
-        walkers.case, [BedVariant("ablation", Variant("bad", {"time.dem_step_s": 1e-4}))], tmp_path,
-        bench.reference, 1,
-    )  # fmt: skip
+    bad = BedVariant("ablation", Variant("bad", {"time.dem_step_s": 1e-4}))
+    simulated_beds.simulate_bed(walkers.case, bad, tmp_path / "bad")
+    rows = simulated_beds.measure_all([bad], tmp_path, bench.reference)
     for name, cost_s in (("base", 100.0), ("friction_0", 80.0)):
         values = np.load(walkers.folder / "repeats" / "1" / "trajectory.npy").astype(float)
         (tmp_path / name).mkdir()

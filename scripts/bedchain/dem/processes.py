@@ -3,6 +3,7 @@
 
 import os
 import re
+import shlex
 import shutil
 import subprocess
 import sys
@@ -17,6 +18,7 @@ from bedchain.lifetime import child_ends_with_parent, descendants
 
 # mpirun's ranks are its children, not ours: each gets SIGKILL as soon as mpirun has ended, however it ended
 RANK_ENDS_WITH_MPIRUN = ("setpriv", "--pdeathsig", "KILL")
+LAUNCHER = "BEDCHAIN_LAUNCHER"  # environment variable: starts ranks on several nodes, such as srun --mpi=pmix
 # A solver that writes no line for so long makes no progress. Its start and its longest step without a line
 # take seconds; ten minutes leave room for a machine that swaps or a disk that hangs.
 SILENCE_S = 600.0
@@ -29,8 +31,13 @@ ERROR_LINE = re.compile(r"ERROR|FATAL|error:|No space left|rror while loading")
 
 
 def solver_environment() -> dict[str, str]:
-    """Environment of the solvers; variables set by the user are kept."""
-    environment = dict(os.environ)
+    """Environment of the solvers; variables set by the user are kept.
+
+    A job's SLURM is hidden, unless it starts the ranks (`LAUNCHER`): a single rank inside srun looks for it,
+    and Debian's Open MPI then ends with an error.
+    """
+    hidden = () if os.environ.get(LAUNCHER) else ("SLURM_", "PMI")
+    environment = {name: value for name, value in os.environ.items() if not name.startswith(hidden)}
     environment.setdefault("WM_PROJECT_DIR", "/usr/share/openfoam")
     environment.setdefault("OMPI_MCA_rmaps_base_oversubscribe", "1")
     # bedFoam's guards report an overflow with place and time; OpenFOAM's trap gives neither
@@ -44,7 +51,9 @@ def solver_environment() -> dict[str, str]:
 
 
 def on_ranks(command: list[str], ranks: int) -> list[str]:
-    """The command line that runs a command on MPI ranks."""
+    """The command line that runs a command on MPI ranks, by mpirun or by the user's `LAUNCHER`."""
+    if launcher := shlex.split(os.environ.get(LAUNCHER, "")):
+        return [*launcher, "-n", str(ranks), *command]
     return command if ranks == 1 else ["mpirun", "-np", str(ranks), *RANK_ENDS_WITH_MPIRUN, *command]
 
 

@@ -10,6 +10,7 @@ from pathlib import Path
 import pytest
 
 from bedchain.dem.processes import (
+    LAUNCHER,
     SILENCE_S,
     Progress,
     error_lines,
@@ -128,6 +129,15 @@ def test_what_the_user_has_set_stays(monkeypatch):
     monkeypatch.delenv("WM_PROJECT_DIR", raising=False)
     environment = solver_environment()
     assert environment["FOAM_SIGFPE"] == "true" and environment["WM_PROJECT_DIR"].startswith("/")
+
+
+def test_a_job_s_slurm_is_hidden_from_the_solvers_unless_it_starts_their_ranks(monkeypatch):
+    monkeypatch.setenv("SLURM_STEPID", "0")
+    monkeypatch.delenv(LAUNCHER, raising=False)
+    assert "SLURM_STEPID" not in solver_environment()
+    monkeypatch.setenv(LAUNCHER, "srun --mpi=pmix")
+    assert solver_environment()["SLURM_STEPID"] == "0"
+    assert on_ranks(["liggghts"], 16) == ["srun", "--mpi=pmix", "-n", "16", "liggghts"]
 
 
 def test_progress_says_what_is_left_now_and_then_and_keeps_the_totals(capsys):

@@ -1,14 +1,14 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Cost and errors of the variants of a bed, simulated side by side."""
+"""Variants of a bed: each simulated by itself, then their cost and errors."""
 
+import json
 import logging
 import threading
-import time
 from collections.abc import Callable, Sequence
-from concurrent.futures import ThreadPoolExecutor, as_completed
 from pathlib import Path
 from typing import Any, TypeVar
 
+from bedchain.case.load import load_case
 from bedchain.case.schema import Case
 from bedchain.case.variants import Variant
 from bedchain.dem.series import read_series
@@ -33,67 +33,78 @@ SOLVERS = ("bedFoam", "liggghts")
 # the peak is kept by the system: it has to be read once before a solver ends
 LOOK_EVERY_S = 0.5
 PEAK_FILE = "peak_memory_mb"
+RECORD = "variant.json"
 
 
-def simulate_all(
-    case_file: Path, wanted: Sequence[BedVariant], folder: Path, reference: Reference, at_once: int
-) -> list[Row]:
-    """Rows of all variants, in their order; a variant that fails has the reason in its row.
+def simulate_bed(case_file: Path, bed: BedVariant, folder: Path) -> None:
+    """Simulate a variant to its end or to the error that stops it, or go on with it; `RECORD` says which.
 
     Parameters
     ----------
     case_file : Path
-        The case of which they are variants.
+        The case that it varies.
+    bed : BedVariant
+    folder : Path
+        Of the variant; after a stop its finished segments are used again.
+    """
+    memory_mb, problem = float("nan"), ""
+    try:
+        _, memory_mb = watched(
+            lambda: simulate(case_file, on_one_rank(bed.variant), folder), str(folder), folder / PEAK_FILE
+        )
+    except UserError as error:
+        problem = str(error)
+        LOG.warning("%s: %s", bed.variant.name, problem)
+    folder.mkdir(parents=True, exist_ok=True)
+    write_text(folder / RECORD, json.dumps({"problem": problem, "memory_mb": memory_mb}))
+
+
+def measure_all(wanted: Sequence[BedVariant], folder: Path, reference: Reference) -> list[Row]:
+    """Rows of variants that were simulated, in their order; one that failed has the reason in its row.
+
+    Parameters
+    ----------
     wanted : sequence of BedVariant
     folder : Path
-        Gets a folder for each variant; after a stop its finished segments are used again.
+        With a folder for each variant.
     reference : Reference
         Of the run and its repeats; variants that are realisations of the same bed join it.
-    at_once : int
-        Variants side by side, on one rank each.
 
     Returns
     -------
     list of dict
         One for each variant: labels, cost, errors, ``problem`` (empty without one).
+
+    Raises
+    ------
+    UserError
+        A variant is not simulated.
     """
-    begun, rows, beds = time.monotonic(), {}, {}
-    with ThreadPoolExecutor(max_workers=at_once) as executor:
-        jobs = {executor.submit(bed_row, case_file, bed, folder / bed.variant.name): bed for bed in wanted}
-        try:
-            for number, job in enumerate(as_completed(jobs), 1):
-                name, (row, observables) = jobs[job].variant.name, job.result()
-                rows[name] = row
-                if observables:
-                    beds[name] = observables
-                left_s = (time.monotonic() - begun) / number * (len(wanted) - number)
-                outcome = row["problem"].splitlines()[0] if row["problem"] else f"{row['cost_s']:.0f} s"
-                LOG.info(
-                    "%d of %d beds, %s: %s; about %.0f s left", number, len(wanted), name, outcome, left_s
-                )
-        except BaseException:
-            executor.shutdown(wait=False, cancel_futures=True)
-            raise
+    rows, beds = {}, {}
+    for bed in wanted:
+        name = bed.variant.name
+        rows[name], observables = bed_row(bed, folder / name)
+        if observables:
+            beds[name] = observables
     alike = [bed.variant.name for bed in wanted if bed.axis == REALISATION and bed.variant.name in beds]
     for name, observables in beds.items():
         # no bed is compared with itself
         others = [beds[other] for other in alike if other != name]
         rows[name] |= bed_errors(reference.joined(others), observables)
-    return [rows[bed.variant.name] for bed in wanted]
+    return list(rows.values())
 
 
-def bed_row(case_file: Path, bed: BedVariant, folder: Path) -> tuple[Row, BedObservables | None]:
-    """Row of one variant, simulated or gone on with, and its observables (None where it failed)."""
+def bed_row(bed: BedVariant, folder: Path) -> tuple[Row, BedObservables | None]:
+    """Row of a variant that was simulated, and its observables (None where it failed)."""
+    if not (folder / RECORD).exists():
+        raise UserError(f"{folder} is not simulated: scripts/run_variant.py, or ./run tradeoff, does it")
+    record = json.loads((folder / RECORD).read_text(encoding="utf-8"))
     labels = {"half": HALF, "axis": bed.axis, "variant": bed.variant.name, "changed": bed.changed}
-    try:
-        case, memory_mb = watched(
-            lambda: simulate(case_file, on_one_rank(bed.variant), folder), str(folder), folder / PEAK_FILE
-        )
-        wall_s = sum(part["wall_s"] for part in read_manifest(folder / "dem.json")["segments"])
-        cost = {"run_s": wall_s, "cost_s": wall_s, "memory_mb": memory_mb}
-        return labels | cost | {"problem": ""}, bed_observables(folder, case)
-    except UserError as error:
-        return labels | {"problem": str(error)}, None
+    if record["problem"]:
+        return labels | {"problem": record["problem"]}, None
+    wall_s = sum(part["wall_s"] for part in read_manifest(folder / "dem.json")["segments"])
+    cost = {"run_s": wall_s, "cost_s": wall_s, "memory_mb": record["memory_mb"]}
+    return labels | cost | {"problem": ""}, bed_observables(folder, load_case(folder / "case.yaml"))
 
 
 def on_one_rank(variant: Variant) -> Variant:

@@ -9,10 +9,11 @@ import pytest
 
 from bedchain.case.load import load_case
 from bedchain.case.variants import Variant
+from bedchain.errors import UserError
 from bedchain.studies.tradeoff import simulated_beds
 from bedchain.studies.tradeoff.bed_variants import BedVariant, bed_variants
 from bedchain.studies.tradeoff.observables import BedObservables
-from bedchain.studies.tradeoff.simulated_beds import simulate_all, solver_memory
+from bedchain.studies.tradeoff.simulated_beds import measure_all, simulate_bed, solver_memory
 from made.realisations import realisations
 
 SHORT = Path("cases/short/case.yaml")
@@ -28,14 +29,14 @@ def test_a_realisation_is_not_compared_with_itself(monkeypatch, tmp_path):
     reference = realisations(number=3)
     known = {"base": 0.05, "seed_1": 0.07, "friction_0": 0.08}
 
-    def bed_row(case_file, one, folder):
+    def bed_row(one, folder):
         name = one.variant.name
         bed = BedObservables(reference.curves[0], reference.densities[0], {"bed_height": known[name]})
         return {"variant": name, "cost_s": 1.0, "problem": ""}, bed
 
     monkeypatch.setattr(simulated_beds, "bed_row", bed_row)
     variants = bed_variants(load_case(SHORT))
-    rows = simulate_all(SHORT, [variants[name] for name in known], tmp_path, reference, at_once=1)
+    rows = measure_all([variants[name] for name in known], tmp_path, reference)
     own = list(reference.scalars["bed_height"])
     for row, pool in zip(rows, ([0.07], [0.05], [0.05, 0.07]), strict=True):
         error = known[row["variant"]] - np.mean(own + pool)
@@ -48,11 +49,18 @@ def test_a_variant_that_cannot_run_is_a_row_with_its_reason(tmp_path):
         BedVariant("ablation", Variant("long_step", {"time.dem_step_s": 1e-4})),
         BedVariant("ablation", Variant("no_bed", {"bed.width_m": -1.0})),
     ]
-    rows = simulate_all(SHORT, wrong, tmp_path, realisations(), at_once=2)
+    for bed in wrong:
+        simulate_bed(SHORT, bed, tmp_path / bed.variant.name)
+    rows = measure_all(wrong, tmp_path, realisations())
     assert [row["variant"] for row in rows] == ["long_step", "no_bed"]
     assert "Rayleigh" in rows[0]["problem"] and "bed.width_m" in rows[1]["problem"]
     assert rows[0]["changed"] == "time.dem_step_s 0.0001"
     assert not {"cost_s", "mixing_error_1"} & set(rows[0])
+
+
+def test_a_variant_that_nobody_simulated_is_named_with_the_way_to_it(tmp_path):
+    with pytest.raises(UserError, match=r"base is not simulated: scripts/run_variant.py"):
+        measure_all([bed_variants(load_case(SHORT))["base"]], tmp_path, realisations())
 
 
 def test_memory_is_that_of_solvers_with_the_folder_in_their_command():
