@@ -86,7 +86,7 @@ class Slurm:
         """Comment, which names the rule, and state of the jobs by their ids; of all states without a word."""
         asked = self.ask("squeue", "--noheader", f"--states={','.join(states) or 'all'}", "--format=%i|%k|%T")
         lines = (line.split("|") for line in asked.splitlines())
-        return {int(number): (comment, state) for number, comment, state in lines}
+        return dict(sorted((int(number), (comment, state)) for number, comment, state in lines))
 
     def logs(self) -> str:
         """The last lines of the daemons."""
