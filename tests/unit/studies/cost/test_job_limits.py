@@ -15,7 +15,7 @@ from bedchain.studies.cost.job_limits import (
     job_limits,
     shortest_useful_minutes,
 )
-from bedchain.studies.cost.machine_speed import Speed
+from bedchain.studies.cost.machine_speed import Speed, bed_of
 from made import ROOT
 
 
@@ -25,7 +25,7 @@ def case(request):
 
 
 def test_limits_hold_the_estimate_with_its_margin(case, monkeypatch):
-    cores = set(range(case["run"]["ranks"]))  # of a node that has what the bed asks for
+    cores = set(range(bed_of(case).ranks))  # of a node that has what the bed asks for
     monkeypatch.setattr("os.sched_getaffinity", lambda process: cores)
     stages = ["settling", "dem", "exchange", "gas", "segment_starts"]
     wall_s = predicted(case, Speed(1, 1, 1, 1, ""))["wall_s"][stages].sum()
