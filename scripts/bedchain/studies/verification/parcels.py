@@ -14,7 +14,7 @@ from bedchain.studies.verification.fluidization import FASTEST, RAMP, fitted_ons
 from bedchain.studies.verification.laws import LAWS, ergun_gradient, minimum_fluidization, suspension
 from bedchain.studies.verification.plots import Curve, draw
 from bedchain.studies.verification.rows import Row
-from bedchain.studies.verification.settled_bed import random_bed, settled
+from bedchain.studies.verification.settled_bed import CELL, random_bed, settled
 from bedchain.uncertainty.bands import block_error, kept_blocks, kept_steps
 
 NEAR_DRAG, NEAR_ONSET, NEAR_RESTITUTION, NEAR_COOLING = 0.001, 0.02, 0.005, 0.05
@@ -94,6 +94,8 @@ def check_onset(work: Path, solver: Path, figures: Path) -> list[Row]:
     sections = single.sections | {
         "bed": {"width_m": width * SIZE, "height_m": height * SIZE},
         "particles": {"number": round(number * SIZE**2), "parcel_diameters": SIZE},
+        # as many parcels in a cell as particles: the surface of the bed is as sharp
+        "gas": {"cell_size_m": CELL * SIZE},
     }
     x, z = single.particles[:, :2].T * SIZE
     scaled = spheres_at_rest(x, z, SIZE * DIAMETER)
