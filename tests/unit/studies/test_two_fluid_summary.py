@@ -40,7 +40,7 @@ def pressure():
     return pd.DataFrame(
         {
             "time_s": times,
-            "pressure_drop_Pa": 1200 + 50 * np.sin(2 * np.pi * 4 * times),
+            "pressure_drop_Pa": 1200 + 50 * np.sin(2 * np.pi * 5 * times),
             "solids_drift_1": -2e-6 * times / 1.5,
         }
     )
@@ -58,8 +58,8 @@ def test_series_profile_and_curves_of_a_roll(case, roll, tmp_path):
     np.testing.assert_allclose(summary.series["share_low_1"], 0.5)
     np.testing.assert_allclose(summary.profile["voidage_1"], [0.6] * 8 + [1.0] * 12)
     assert summary.density["share_1"].sum() == pytest.approx(1)
-    assert summary.record["pressure_frequency_Hz"] == pytest.approx(4.0)
-    assert summary.record["pressure_frequency_resolution_Hz"] == pytest.approx(4.0)
+    assert summary.record["pressure_frequency_Hz"] == pytest.approx(5.0)
+    assert summary.record["pressure_frequency_resolution_Hz"] == pytest.approx(5.0)
     assert summary.record["carries_weight_1"]["rest"] == pytest.approx(0.03)
     assert summary.record["largest_drift_1"] == pytest.approx(2e-6) and summary.record["cpu_s_per_s"] == 12.0
     ends = summary.mixing.groupby(["source", "group"])["fraction_remaining_1"].last()
