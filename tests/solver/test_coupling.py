@@ -66,7 +66,7 @@ def test_a_bed_begun_on_two_ranks_ends_on_three(make_bed):
     begun = series(folder)
     run_dem(folder, 0.04, 0.02, 3)
     table = series(folder)
-    assert len(list(folder.glob("dem/*"))) == 1
+    assert len(list(folder.glob("dem/*/settled"))) == 1, "other ranks began anew"
     assert len(list(folder.glob("dem/*/segment_0002/gas/processor*"))) == 3
     assert table.iloc[: len(begun)].equals(begun)
     assert table["exchange_error_1"].max() < ROUND_OFF
