@@ -93,7 +93,8 @@ def diagnose_chains(
     longest = max(lags[-1], int(FOLLOWED_SHARE * len(frames.times_s)) // lag * lag)
     looks = count_sides(frames, *splits, range(lag, longest + 1, lag))
     remembered = memory(frames, splits.split_x_m)
-    if short := shortness((len(frames.times_s) - 1) / remembered):
+    correlation_times = (len(frames.times_s) - 1) / remembered
+    if short := shortness(correlation_times):
         LOG.warning("the learning window's %s", short)
     seeds = np.random.SeedSequence(settings.seed).spawn(2 * len(chains))
     of_paths, of_indices = (
@@ -129,12 +130,11 @@ def diagnose_chains(
         if np.isfinite(share[0]):
             rows.append(share_row(name, length_s, height_m, float(share[0]), share[1]))
         rows += lacey_rows(name, of_time, *indices)
-    long_enough = (len(frames.times_s) - 1) / remembered
     if run.grid.rows_are_heights:
         rows.append(arrival_row("dem", frames, run.grid, top))
-    rows += dispersion_rows("dem", frames, run.grid, lags[::DISPERSION_STRIDE], long_enough)
+    rows += dispersion_rows("dem", frames, run.grid, lags[::DISPERSION_STRIDE], correlation_times)
     known = in_cells(frames.times_s, frames.cells, run.grid)
-    rows += dispersion_rows("dem_cells", known, run.grid, lags[::DISPERSION_STRIDE], long_enough)
+    rows += dispersion_rows("dem_cells", known, run.grid, lags[::DISPERSION_STRIDE], correlation_times)
     for name, chain in chains.items():
         if name not in PAPER_MODELS:
             distance = total_variation(chain.long_run_density(before), density)

@@ -253,6 +253,13 @@ def clock_text(seconds: float) -> str:
     return f"{whole // 3600}:{whole // 60 % 60:02d}:{whole % 60:02d}"
 
 
+def show_progress(name: str, now_s: float, end_s: float, cost: float, more: str = "") -> None:
+    """A line on stderr: simulated time of the whole [s], wall time a simulated second [s], time left."""
+    left = clock_text(cost * max(end_s - now_s, 0))
+    text = f"{now_s:.3f} of {end_s:g} s simulated, {cost:.0f} s per simulated second, {left} left{more}"
+    print(f"{name}: {text}", file=sys.stderr, flush=True)
+
+
 class Progress:
     """Progress of a run on stderr every few seconds, from bedFoam's lines of progress.
 
@@ -286,9 +293,4 @@ class Progress:
             return
         self.last = time.monotonic()
         now_s, cost = float(progress[1]), float(progress[2])
-        print(
-            f"run_dem: {now_s:.3f} of {self.end_s:g} s simulated, {cost:.0f} s per simulated second, "
-            f"{clock_text(cost * max(self.end_s - now_s, 0))} left ({progress[3].strip()})",
-            file=sys.stderr,
-            flush=True,
-        )
+        show_progress("run_dem", now_s, self.end_s, cost, f" ({progress[3].strip()})")

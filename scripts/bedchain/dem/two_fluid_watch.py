@@ -3,7 +3,6 @@
 
 import math
 import re
-import sys
 import time
 from pathlib import Path
 
@@ -12,7 +11,7 @@ import pandas as pd
 
 from bedchain.case.schema import Case
 from bedchain.dem.gas_case import last_time
-from bedchain.dem.processes import clock_text
+from bedchain.dem.processes import show_progress
 from bedchain.dem.two_fluid_fields import read_frame, read_vectors
 from bedchain.dem.two_fluid_start import grid_of, largest_solids, start_solids
 from bedchain.errors import UserError
@@ -121,15 +120,12 @@ class Progress:
         if not (match := TIME.match(line)):
             return
         self.now_s = float(match[1])
-        if not self.memory_mb or time.monotonic() - self.last >= self.EVERY_S:
+        now = time.monotonic()
+        due = now - self.last >= self.EVERY_S
+        if due or not self.memory_mb:
             self.memory_mb = max(self.memory_mb, children_peak_mb())
-        if (now := time.monotonic()) - self.last < self.EVERY_S:
+        if not due:
             return
         self.last = now
         cost = (now - self.began) / max(self.now_s - self.start_s, 1e-9)
-        print(
-            f"two_fluid: {self.now_s:.3f} of {self.end_s:g} s simulated, {cost:.0f} s per simulated second, "
-            f"{clock_text(cost * max(self.end_s - self.now_s, 0))} left",
-            file=sys.stderr,
-            flush=True,
-        )
+        show_progress("two_fluid", self.now_s, self.end_s, cost)

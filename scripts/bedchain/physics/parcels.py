@@ -4,7 +4,7 @@
 import math
 
 
-def particles_in(diameters: float, layered: bool) -> float:
+def particles_in(diameters: float, thick: bool) -> float:
     """Particles of a bed that a parcel stands for [1].
 
     A parcel is as dense as a particle and fills its volume ``l^3`` times. A bed of one layer is ``l`` times
@@ -14,10 +14,10 @@ def particles_in(diameters: float, layered: bool) -> float:
     ----------
     diameters : float
         Diameter of a parcel over that of a particle, l [1].
-    layered : bool
+    thick : bool
         Whether the bed is many particles thick.
     """
-    return diameters**3 if layered else diameters**2
+    return diameters**3 if thick else diameters**2
 
 
 def parcel_restitution(restitution: float, diameters: float) -> float:

@@ -5,8 +5,8 @@ import pytest
 
 from bedchain.case.load import load_case
 from bedchain.command_line.cluster import PROGRAMS, check_slurm, check_time_limit
-from bedchain.errors import UserError
 from made import ROOT
+from made.refusals import message_of
 
 
 @pytest.fixture
@@ -19,14 +19,6 @@ def programs(tmp_path, monkeypatch):
         (tmp_path / name).chmod(0o755)
 
     return write
-
-
-def message_of(check, *arguments):
-    """The message of a check that refuses, in one line."""
-    with pytest.raises(UserError) as caught:
-        check(*arguments)
-    assert "\n" not in str(caught.value)
-    return str(caught.value)
 
 
 def test_a_machine_without_slurm_is_told_so(programs):

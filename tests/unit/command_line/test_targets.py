@@ -5,16 +5,9 @@ import pytest
 
 from bedchain.command_line.targets import check_options, check_targets
 from bedchain.errors import UserError
+from made.refusals import message_of
 
 CASES = ["short", "paper"]
-
-
-def message_of(check, *arguments):
-    """The message of a check that refuses, in one line."""
-    with pytest.raises(UserError) as caught:
-        check(*arguments)
-    assert "\n" not in str(caught.value)
-    return str(caught.value)
 
 
 @pytest.mark.parametrize(

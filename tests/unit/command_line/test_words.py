@@ -7,6 +7,7 @@ from snakemake.cli import parse_config
 from bedchain.command_line.words import CHOICES, as_typed, check_words
 from bedchain.errors import UserError
 from made import ROOT
+from made.refusals import message_of
 
 
 @pytest.mark.parametrize(
@@ -29,14 +30,6 @@ def test_the_case_of_the_paper_s_module_stays():
 def test_a_number_of_a_configuration_file_wants_quotes():
     with pytest.raises(UserError, match="case is 20241125, not text: put it in quotes"):
         as_typed({"case": 20241125}, None)
-
-
-def message_of(check, *arguments):
-    """The message of a check that refuses, in one line."""
-    with pytest.raises(UserError) as caught:
-        check(*arguments)
-    assert "\n" not in str(caught.value)
-    return str(caught.value)
 
 
 def parsed(typed):

@@ -4,7 +4,6 @@
 import numpy as np
 import pytest
 
-from bedchain.chains.networks.mixer import loaded, static_mixer
 from bedchain.chains.networks.mixture import (
     composition,
     limit_of,
@@ -13,7 +12,6 @@ from bedchain.chains.networks.mixture import (
     mixture_table,
     mixtures_table,
 )
-from bedchain.chains.networks.page import PageChain
 from bedchain.errors import UserError
 
 
@@ -35,16 +33,6 @@ def test_variances_of_a_table_are_over_those_of_the_start():
     table = mixture_table(key, np.ones((2, 2)), np.ones(2), 1000, np.array([0.0, 2.0]))
     curve = table[table["quantity"] == "content_variance"]
     assert curve["value"].tolist() == [1, 0.25] and curve["time_s"].tolist() == [0, 2]
-
-
-@pytest.fixture(scope="module")
-def mixers():
-    networks = [static_mixer(10, 1, 10, 0.35, 0.25, 0.0), static_mixer(10, 1, 10, 0.3, 0.3, 0.0)]
-    starts = [loaded(10, 1, "top", 0.5), loaded(10, 1, "bottom", 0.5)]
-    return {
-        name: PageChain(name, *pair, {})
-        for name, pair in zip("ab", zip(networks, starts, strict=True), strict=True)
-    }
 
 
 def test_mixture_has_its_best_revolution_below_the_limit(mixers):

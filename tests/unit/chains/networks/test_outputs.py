@@ -5,7 +5,6 @@ import numpy as np
 import pytest
 
 from bedchain.chains.networks import outputs
-from bedchain.chains.networks.mixer import loaded, static_mixer
 from bedchain.chains.networks.page import PageChain
 from bedchain.chains.networks.riser import Exchange, riser_steps
 
@@ -13,16 +12,6 @@ from bedchain.chains.networks.riser import Exchange, riser_steps
 @pytest.fixture(scope="module")
 def riser():
     return PageChain("riser", riser_steps(3, Exchange(0, 0, 0.1, 0.2, 0)), None, {})
-
-
-@pytest.fixture(scope="module")
-def mixers():
-    networks = [static_mixer(10, 1, 10, 0.35, 0.25, 0.0), static_mixer(10, 1, 10, 0.3, 0.3, 0.0)]
-    starts = [loaded(10, 1, "top", 0.5), loaded(10, 1, "bottom", 0.5)]
-    return {
-        name: PageChain(name, *pair, {})
-        for name, pair in zip("ab", zip(networks, starts, strict=True), strict=True)
-    }
 
 
 def test_residence_rises_to_nearly_all_and_its_rate_is_its_slope(riser):
