@@ -20,8 +20,7 @@ from made import ROOT
 
 RESTITUTION, DIAMETER, DENSITY, THETA, END_S = 0.8, 1e-3, 2600.0, 0.01, 0.05
 COOLING_TOLERANCE = 0.015  # a step is 3 % of the shortest time of cooling, with Euler's method
-ERGUN_TOLERANCE = 0.02  # the solids rise a little, which lessens the slip
-WEIGHT_TOLERANCE = 0.03  # the solids are still speeding up a little
+CARRIED_TOLERANCE = 0.01  # of Ergun's pressure drop and the weight; a frame scatters by 2 %
 REST_TOLERANCE = 0.05  # of the weight: six frames, viscous stress at the floor
 LIMIT = 0.62  # of the packing, for the contact value of Sinclair and Jackson
 
@@ -92,24 +91,30 @@ def test_granular_temperature_cools_by_collisions_and_drag(case, tmp_path):
 
 
 def test_ergun_s_pressure_drop_and_the_bed_s_weight(case, tmp_path):
-    # gravity such that the gas just carries uniform solids: its pressure drop is Ergun's and the weight
-    solids, speed = 0.55, 0.3
+    # gravity such that the gas just carries uniform solids, too loose for friction: its pressure drop is
+    # Ergun's and the weight
+    solids, speed, frames = 0.45, 0.3, [0.075, 0.1, 0.125, 0.15]
     case["bed"]["height_m"] = 0.08
     gravity = ergun_gradient(1 - solids, DIAMETER, 1.2, 1.8e-5, speed) / (solids * (DENSITY - 1.2))
     case["gas"]["superficial_velocity_m_s"] = speed
-    case["time"]["ramp_s"] = 0.005
+    case["time"] |= {"ramp_s": 0.005, "end_s": frames[-1], "segment_s": frames[-1]}
     gas = openfoam_case(tmp_path / "run", case, solids, gravity)
     run_logged(["twoPhaseEulerFoam", "-case", str(gas)], tmp_path / "log")
     pressure, share = (
-        read_scalars(gas / f"{END_S:g}" / name, 16).reshape(8, 2).mean(axis=1)
+        np.mean([rows(gas / f"{time_s:g}" / name) for time_s in frames], axis=0)
         for name in ("p", "alpha.particles")
     )
     # between the middles of cells: at the inlet the solver gives the pressure of the lowest cell
     gradients, between = -np.diff(pressure)[1:] / 0.01, (share[1:-1] + share[2:]) / 2
     ergun = [ergun_gradient(1 - value, DIAMETER, 1.2, 1.8e-5, speed) for value in between]
     weight = gravity * (between * DENSITY + (1 - between) * 1.2)
-    assert gradients.sum() == pytest.approx(sum(ergun), rel=ERGUN_TOLERANCE)
-    assert gradients.sum() == pytest.approx(weight.sum(), rel=WEIGHT_TOLERANCE)
+    assert gradients.sum() == pytest.approx(sum(ergun), rel=CARRIED_TOLERANCE)
+    assert gradients.sum() == pytest.approx(weight.sum(), rel=CARRIED_TOLERANCE)
+
+
+def rows(file):
+    """Means over the two cells of each row of eight."""
+    return read_scalars(file, 16).reshape(8, 2).mean(axis=1)
 
 
 def test_a_run_goes_on_after_its_last_segment_and_its_flow_carries_its_solids(case, tmp_path):
