@@ -1,8 +1,9 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Memory: of the machine, and the peak of a process, as the system keeps them."""
+"""Memory of the machine, peak of a process, processor time of children, as the system keeps them."""
 
 import os
 import re
+import resource
 import threading
 from pathlib import Path
 
@@ -46,6 +47,12 @@ def children_peak_mb() -> float:
     except OSError:  # ended meanwhile, or a system that keeps no such list
         pass
     return max(peaks)
+
+
+def children_cpu_s() -> float:
+    """Processor time of the children of this process that have ended, and of theirs [s]."""
+    spent = resource.getrusage(resource.RUSAGE_CHILDREN)
+    return spent.ru_utime + spent.ru_stime
 
 
 def forget_peak() -> bool:

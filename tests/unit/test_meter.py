@@ -1,12 +1,14 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""The peak of the memory rises with what is allocated, and starts again when it is forgotten."""
+"""The peak of the memory rises with what is allocated; processor time of a child counts when it has ended."""
 
 import os
+import subprocess
+import sys
 
 import numpy as np
 import pytest
 
-from bedchain.meter import forget_peak, peak_memory_mb
+from bedchain.meter import children_cpu_s, forget_peak, peak_memory_mb
 
 BLOCK_MB = 200.0
 
@@ -25,3 +27,10 @@ def test_peak_holds_a_block_that_was_freed():
 def test_a_process_that_has_ended_has_no_peak():
     with pytest.raises(OSError):
         peak_memory_mb(2**22 + 1)
+
+
+def test_processor_time_is_that_of_the_child_and_of_its_own():
+    busy = "import time\nwhile time.process_time() < 0.3: pass"
+    before_s = children_cpu_s()
+    subprocess.run(["sh", "-c", f'"{sys.executable}" -S -c "{busy}"; sleep 0.2'], check=True)
+    assert 0.29 < children_cpu_s() - before_s < 0.6

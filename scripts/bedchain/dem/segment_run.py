@@ -20,6 +20,7 @@ from bedchain.dem.segments import (
 )
 from bedchain.errors import DataError, UserError
 from bedchain.files import atomic_folder
+from bedchain.meter import children_cpu_s
 
 SOLVER = Path("results/bin/bedFoam")
 SETTLE_LINE_STEPS = 5000  # of the particles between two lines of in.settle and in.fill: their `thermo`
@@ -82,6 +83,7 @@ def run_segment(run: SegmentedRun, index: int, steps: tuple[int, int], follows: 
     parameters = read_parameters(run.case / "parameters.lig")
     name = f"segment_{index:04d}"
     previous = run.state / (f"segment_{index - 1:04d}" if index > 1 else run.origin)
+    before_s = children_cpu_s()
     with atomic_folder(run.state / name) as part:
         try:
             simulate = drum.simulate if drum.is_drum(run.case) else _simulate_bed
@@ -90,7 +92,8 @@ def run_segment(run: SegmentedRun, index: int, steps: tuple[int, int], follows: 
             raise UserError(f"{error}\nlast good state: {previous / RESTART}") from None
         with complete(part):
             check_state(run, part, steps[1], parameters)
-        segment = Segment(index, *steps, name, *spent, follows)
+        cpu_s = round(children_cpu_s() - before_s, 3)
+        segment = Segment(index, *steps, name, *spent, follows, cpu_s=cpu_s)
         return write_record(part, segment)
 
 

@@ -85,6 +85,8 @@ class Segment:
         Hash of the state that it went on from; empty in a record of an earlier version.
     files : dict of str to dict
         Fingerprint of each file by its path in the folder; empty in a record of an earlier version.
+    cpu_s : float
+        Processor time of the solver, all ranks together [s]; 0 in a record of an earlier version.
     """
 
     index: int
@@ -97,6 +99,7 @@ class Segment:
     gas_s: float
     follows: str = ""
     files: dict[str, dict[str, Any]] = field(default_factory=dict)
+    cpu_s: float = 0.0
 
     @property
     def state(self) -> str:
@@ -279,6 +282,7 @@ def manifest(run: SegmentedRun, segments: list[Segment]) -> dict[str, object]:
                 "dem_s": item.dem_s,
                 "exchange_s": item.exchange_s,
                 "gas_s": item.gas_s,
+                "cpu_s": item.cpu_s,
             }
             for item in segments
         ],

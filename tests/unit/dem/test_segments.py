@@ -35,7 +35,7 @@ def run(tmp_path):
         write_restart(folder / segments.RESTART, 7, word=b"%d" % index)
         write_gas(folder / "gas", end * 2e-5)
         (folder / "bedFoam.log").write_text("log")
-        segment = Segment(index, start, end, folder.name, 4.0, 3.0, 0.5, 0.25, follows)
+        segment = Segment(index, start, end, folder.name, 4.0, 3.0, 0.5, 0.25, follows, cpu_s=3.75)
         follows = segments.write_record(folder, segment).state
     return run
 
@@ -166,4 +166,5 @@ def test_the_manifest_lists_each_frame_once_with_its_owner_and_its_fingerprint(r
     assert manifest["segments"][1] == {
         "index": 2, "start_s": pytest.approx(8e-3), "end_s": pytest.approx(0.012),
         "folder": "dem/a1b2/segment_0002", "wall_s": 4.0, "dem_s": 3.0, "exchange_s": 0.5, "gas_s": 0.25,
+        "cpu_s": 3.75,
     }  # fmt: skip

@@ -29,15 +29,18 @@ def dem_row(manifest: dict[str, Any], start_s: float, end_s: float) -> Row:
     UserError
         The segments do not cover the window.
     """
-    wall = covered = 0.0
+    wall = cpu = covered = 0.0
     for segment in manifest["segments"]:
         inside = max(0.0, min(end_s, segment["end_s"]) - max(start_s, segment["start_s"]))
-        wall += segment["wall_s"] * inside / (segment["end_s"] - segment["start_s"])
+        share = inside / (segment["end_s"] - segment["start_s"])
+        wall += segment["wall_s"] * share
+        # a record of an earlier version has no processor time
+        cpu += (segment.get("cpu_s") or segment["wall_s"] * manifest["ranks"]) * share
         covered += inside
     if abs(covered - (end_s - start_s)) > manifest["frame_interval_s"] / 2:
         raise UserError(f"dem.json: its segments cover {covered:g} s of the {end_s - start_s:g} s to compare")
     work = manifest["number"] * (end_s - start_s) / manifest["dem_step_s"]
     return {
-        "stage": "dem", "wall_s": wall, "cpu_s": wall * manifest["ranks"], "peak_rss_mb": np.nan,
+        "stage": "dem", "wall_s": wall, "cpu_s": cpu, "peak_rss_mb": np.nan,
         "work": round(work), "work_unit": "particle steps",
     }  # fmt: skip

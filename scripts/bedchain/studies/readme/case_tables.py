@@ -133,11 +133,19 @@ def bed(results: Path) -> pd.DataFrame:
         "wall time of the whole run": f"{times['wall_s'].sum() / 60:.0f} min",
         "wall time of a simulated second: mean": f"{times['wall_s'].sum() / spans.sum():.0f} s",
         "wall time of a simulated second: slowest segment": f"{(times['wall_s'] / spans).max():.0f} s",
+        **_processor_time(times, spans),
         "gas and exchange over the particles' time": number(
             (solver["exchange_s"] + solver["gas_s"]) / solver["dem_s"]
         ),
     }
     return _listed(rows)
+
+
+def _processor_time(segments: pd.DataFrame, spans: "pd.Series[float]") -> dict[str, str]:
+    """Row of the processor time; none of a run by an earlier version, which has no such record."""
+    if "cpu_s" not in segments or segments["cpu_s"].min() <= 0:
+        return {}
+    return {"processor time of a simulated second": f"{segments['cpu_s'].sum() / spans.sum():.0f} s"}
 
 
 def costs(results: Path) -> pd.DataFrame:

@@ -31,6 +31,8 @@ RESTITUTIONS = (0.8, 0.97)
 ROLLING_FRICTIONS = (0.05,)
 # diameters of a parcel; those that do not go with the case are left out
 PARCELS = (2.0, 3.0, 4.0)
+# parcels [diameters], gas step and gas cell over the case's, together
+COMBINATIONS = ((2.0, 2.0, 1.0), (2.0, 2.0, 2.0), (3.0, 2.0, 1.0), (3.0, 2.0, 2.0))
 PRESSURE_TOLERANCES = (1e-5, 1e-9)
 SEED_SPACING = 1000
 SEEDS = 2
@@ -165,8 +167,7 @@ def _particles(case: Case) -> Iterator[tuple[str, str, dict[str, Any]]]:
 def _gas(case: Case) -> Iterator[tuple[str, str, dict[str, Any]]]:
     time = case["time"]
     for size in PARCELS:
-        changed = case | {"particles": case["particles"] | {"parcel_diameters": size}}
-        if not physical_problems(checked_keys(changed), set(), {}):
+        if _takes_parcels(case, size):
             yield "parcels", f"parcels_{size:g}", {"particles.parcel_diameters": size}
     for factor in GAS_STEPS:
         step = dividing_step(time["frame_interval_s"], time["gas_step_s"] * factor)
@@ -182,6 +183,13 @@ def _gas(case: Case) -> Iterator[tuple[str, str, dict[str, Any]]]:
     for value in THICKNESSES if case["bed"]["layers"] == "one" else ():
         thickness = value * case["particles"]["diameter_m"]
         yield "slab thickness", f"thickness_{value:g}", {"bed.thickness_m": thickness}
+    for size, longer, wider in COMBINATIONS:
+        if _takes_parcels(case, size):
+            step = dividing_step(time["frame_interval_s"], time["gas_step_s"] * longer)
+            changes = {"particles.parcel_diameters": size} | _with_gas_step(case, step)
+            if wider != 1:
+                changes["gas.cell_size_m"] = dividing_cell(case, wider)
+            yield "combination", f"parcels_{size:g}_gas_step_{longer:g}_gas_cell_{wider:g}", changes
     yield "ablation", "ramp_none", {"time.ramp_s": time["gas_step_s"]}
     fine = {"gas.cell_size_m": dividing_cell(case, 0.5)}
     same_kernel = math.sqrt(2) * case["gas"]["cell_size_m"] / case["particles"]["diameter_m"]
@@ -193,6 +201,12 @@ def _gas(case: Case) -> Iterator[tuple[str, str, dict[str, Any]]]:
 def _weight_of(case: Case) -> list[float]:
     """Values of a case that `particles_carry_the_bed` takes after Young's modulus."""
     return [case_value(case, key) for key in CARRYING_KEYS]
+
+
+def _takes_parcels(case: Case, size: float) -> bool:
+    """Whether parcels of so many diameters go with a case."""
+    changed = case | {"particles": case["particles"] | {"parcel_diameters": size}}
+    return not physical_problems(checked_keys(changed), set(), {})
 
 
 def _with_gas_step(case: Case, gas_step_s: float) -> dict[str, Any]:

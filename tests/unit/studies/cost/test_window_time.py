@@ -19,5 +19,8 @@ def test_dem_time_of_a_window_counts_parts_of_segments():
     row = dem_row(manifest, 0.75, 1.75)
     assert row["wall_s"] == pytest.approx(18) and row["cpu_s"] == pytest.approx(RANKS * 18)
     assert row["work"] == NUMBER * 50000
+    for segment in segments:
+        segment["cpu_s"] = 7.0  # measured, of all ranks
+    assert dem_row(manifest, 0.75, 1.75)["cpu_s"] == pytest.approx(14)
     with pytest.raises(UserError, match="segments cover"):
         dem_row(manifest, 2.0, 4.0)

@@ -64,6 +64,11 @@ def test_bed_is_of_learning_and_comparison(tmp_path: Path) -> None:
     assert values["wall time of the whole run"] == "3 min"
     assert values["wall time of a simulated second: slowest segment"] == "120 s"
     assert values["gas and exchange over the particles' time"] == "0.3"
+    assert "processor time of a simulated second" not in values  # a run by an earlier version
+    timed = {"segments": [piece | {"cpu_s": 50.0} for piece in pieces], "ranks": 2}
+    (tmp_path / "dem.json").write_text(json.dumps(timed))
+    values = case_tables.bed(tmp_path).set_index("quantity")["value"]
+    assert values["processor time of a simulated second"] == "50 s"
 
 
 def test_costs_have_their_ratios(tmp_path: Path) -> None:
