@@ -3,7 +3,7 @@
 #   snakemake --cores 2                        the case `short`, simulated, and `paper`, from its archive
 #   snakemake --cores 2 --config case=mueller  one case of cases/
 #   ... --config reference=simulate            not from the archive cases/<case>/reference/, but by the solvers
-#   ... --config preset=fast                   chains of a preset of cases/presets.yaml, into results/<case>-fast
+#   ... --config preset=fast                   chains and bed of a preset of cases/presets.yaml, into results/<case>-fast
 # A rule gets only the keys of the case that it needs, so a changed key reruns only the rules that use it.
 import atexit
 import logging
@@ -27,6 +27,7 @@ from bedchain.workflow import (
     preset_name,
     quote_interpreter,
     reference_or_exit,
+    simulated_case,
     slurm_or_exit,
     targets_or_exit,
     time_limits_or_exit,
@@ -49,6 +50,7 @@ NAME = WORDS.get("case", "short")
 PRESET = preset_name(WORDS)
 CASE = case_or_exit(NAME, PRESET)
 REFERENCE = reference_or_exit(WORDS.get("reference"), NAME, CASE)
+CASE = simulated_case(CASE, PRESET, REFERENCE)
 WITH_PAPER = "case" not in WORDS and Path("cases/paper/reference").exists()
 FOLDER = f"{NAME}-{PRESET}" if PRESET else NAME
 RESULTS = f"results/{FOLDER}"

@@ -1,5 +1,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 # The bed: simulated by LIGGGHTS and OpenFOAM in restartable segments, or out of its archive; its frames.
+import shlex
+
 from bedchain.dem.repeats import repeat_ranks
 from bedchain.studies.cost.job_limits import job_limits
 from bedchain.workflow import frame_files, solver_values
@@ -40,8 +42,9 @@ rule write_parameters:
     params:
         **solver_values(CASE),
         folder=subpath(output.liggghts, parent=True),
+        preset=f"--preset {shlex.quote(PRESET)}" if OWN_BED else "",
     shell:
-        "python scripts/write_parameters.py {input.case} {params.folder} 2>&1 | tee {log} >&2"
+        "python scripts/write_parameters.py {input.case} {params.folder} {params.preset} 2>&1 | tee {log} >&2"
 
 
 include: "audit_scene.smk"

@@ -5,6 +5,7 @@ from bedchain.case.chosen import is_auto
 from bedchain.case.parcels import parcel_case
 from bedchain.case.rank_checks import most_ranks
 from bedchain.rule_files import source_files
+from bedchain.workflow import solver_values
 
 SIMULATED = parcel_case(CASE)  # with parcels in place of particles, where the case has them
 MODELS = CASE["chain"]["models"]
@@ -14,8 +15,10 @@ RANKS = 1 if "frames" in CASE else most_ranks(CASE)
 RANKS_GIVEN = "auto --cores {threads}" if CASE.get("run", {}).get("ranks") == "auto" else "{threads}"
 REPEATS = range(1, CASE["comparison"]["repeats"] + 1)
 SOLVER = "results/bin/bedFoam"
-# the bed behind the results, simulated or from its archive: the same for all presets
-BED = f"results/{NAME}"
+# the bed behind the results, simulated or from its archive: the case's, unless a preset simulates another
+OWN_BED = bool(PRESET) and solver_values(CASE) != solver_values(case_or_exit(NAME))
+BED_FOLDER = FOLDER if OWN_BED else NAME
+BED = f"results/{BED_FOLDER}"
 RUN = {"dem": f"{BED}/dem.json", "bed_series": f"{BED}/bed_series.csv"}
 TRAJECTORY = {"trajectory": f"{BED}/trajectory.npy", "metadata": f"{BED}/trajectory.json"}
 GAS = CASE["gas"]["model"] != "none"  # without it nothing of OpenFOAM is built or run

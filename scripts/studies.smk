@@ -258,7 +258,6 @@ rule study_ladder:
     input:
         code("study_ladder"),
         **TRAJECTORY,
-        **SETTLED,
         cells=f"{RESULTS}/cells.npz",
         dem=RUN["dem"],
         bed_series=RUN["bed_series"],
@@ -308,8 +307,8 @@ rule estimate_cost:
         "../envs/python.yaml"
     params:
         case=CASE,
-        bed=NAME,
-        benchmarks={"bed": f"benchmarks/{NAME}", "made": BENCHMARKS},
+        bed=BED_FOLDER,
+        benchmarks={"bed": f"benchmarks/{BED_FOLDER}", "made": BENCHMARKS},
         archived=REFERENCE is not None,
         presets="cases/presets.yaml",
         records=dated(

@@ -141,6 +141,19 @@ def test_a_case_and_a_preset_may_be_named_by_numbers(empty):
     assert (empty / file).exists()
 
 
+@pytest.mark.parametrize(("case", "folder"), [("mueller", "mueller-balanced"), ("short", "short")])
+def test_a_preset_simulates_its_own_bed_where_it_changes_it(empty, case, folder):
+    """balanced also leaves lag and cells to the rule."""
+    dry_run = plan(empty, case=case, preset="balanced")
+    assert {f"results/{folder}/dem.json", f"results/{case}-balanced/choice.csv"} <= set(dry_run.outputs)
+
+
+def test_the_bed_of_a_preset_stays_that_of_the_archive(with_archive):
+    dry_run = plan(with_archive, case="paper", preset="fast")
+    assert "unpack_reference" in dry_run.jobs and "run_dem" not in dry_run.jobs
+    assert "results/paper/trajectory.npy" in dry_run.outputs
+
+
 def test_a_network_asks_for_nothing_of_a_bed(empty):
     jobs = plan(empty, case="riser").jobs
     figures = {f"plot_network_{name}" for name in ("states", "residence", "path", "pulses")}

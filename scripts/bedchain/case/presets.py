@@ -1,14 +1,18 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Presets of the chains, cases/presets.yaml: cells, lag and model by name, with measured cost and error.
+"""Presets, cases/presets.yaml: settings of chain and bed by name, with measured cost and error.
 
-A preset is brought onto a case as nearly as its bed and windows allow; particles and gas stay as they are.
+A preset is brought onto a case as nearly as its bed and windows allow. What it changes of the bed holds where
+the bed is simulated: an archive and imported frames are what they are.
 """
 
+import logging
 import math
-from dataclasses import dataclass
+from collections.abc import Mapping
+from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
 
+from bedchain.case import bed_settings
 from bedchain.case.checks import physical_problems
 from bedchain.case.chosen import AUTO
 from bedchain.case.names import NAME_RULE, is_name
@@ -18,9 +22,13 @@ from bedchain.case.strict_yaml import Lines, read_yaml
 from bedchain.errors import CaseError, UserError, guess
 from bedchain.physics.whole_numbers import ratio
 
+LOG = logging.getLogger(__name__)
+
 PRESETS = Path("cases/presets.yaml")
 MADE_BY = "snakemake tradeoff measures presets and writes results/<case>/presets.yaml"
 SETTINGS = ("cell_m", "lag_s", "model")
+# of the bed: Young's modulus and gas step over the case's, diameters of a parcel
+BED_SETTINGS = ("young_modulus_times", "parcel_diameters", "gas_step_times")
 MEASURED = ("cost_s", "error_floors")
 OTHERS = ("density_floors", "measured_on")
 FEWEST_CELLS = 4  # along each side of a bed: of fewer, half a bed is a single cell
@@ -29,7 +37,7 @@ LEVEL_DIAMETERS = 0.5  # an archive keeps positions to half a diameter: cells of
 
 @dataclass(frozen=True)
 class Preset:
-    """Settings of a chain, and what was measured with them.
+    """Settings of a chain and of its bed, and what was measured with them.
 
     Attributes
     ----------
@@ -44,6 +52,8 @@ class Preset:
         Error of the mixing curves in noise floors [1]; NaN where it is not given.
     measured_on : str
         Bed and machine; empty where it is not given.
+    bed : dict of str to float
+        Those of `BED_SETTINGS` that it changes.
     """
 
     name: str
@@ -53,6 +63,7 @@ class Preset:
     cost_s: float = math.nan
     error_floors: float = math.nan
     measured_on: str = ""
+    bed: Mapping[str, float] = field(default_factory=dict)
 
 
 def read_presets(file: Path = PRESETS) -> dict[str, Preset]:
@@ -149,6 +160,36 @@ def with_preset(case: Case, preset: Preset, file: Path = PRESETS) -> Case:
     return changed
 
 
+def with_preset_bed(case: Case, preset: Preset) -> Case:
+    """A case whose bed is simulated as a preset says, as far as the case allows: what it does not is logged.
+
+    Parameters
+    ----------
+    case : dict
+        A checked case of a simulated bed.
+    preset : Preset
+
+    Returns
+    -------
+    dict
+        A checked case; the given one where the preset leaves the bed alone.
+    """
+    for setting, value in preset.bed.items():
+        if case["gas"]["model"] == "none" and setting != "young_modulus_times":
+            continue
+        if setting == "parcel_diameters":
+            changes = bed_settings.parcels(value)
+        elif setting == "gas_step_times":
+            changes = bed_settings.gas_step(case, value)
+        else:
+            changes = bed_settings.stiffness(case, value)
+        if problems := bed_settings.problems_with(case, changes):
+            LOG.warning("preset %s leaves out %s %g: %s", preset.name, setting, value, problems[0].wrong)
+        else:
+            case = bed_settings.changed(case, changes)
+    return case
+
+
 def _preset(file: Path, name: str, given: Any, lines: Lines) -> Preset:
     if not isinstance(given, dict):
         place = f"{file}, line {lines[name]}, {name}"
@@ -162,11 +203,12 @@ def _preset(file: Path, name: str, given: Any, lines: Lines) -> Preset:
     measured = {key: float(given[key]) for key in MEASURED if key in given}
     about = str(given.get("measured_on", ""))
     cell_m, lag_s = (given[key] if given[key] == AUTO else float(given[key]) for key in SETTINGS[:2])
-    return Preset(name, cell_m, lag_s, given["model"], **measured, measured_on=about)
+    bed = {key: float(given[key]) for key in BED_SETTINGS if key in given}
+    return Preset(name, cell_m, lag_s, given["model"], **measured, measured_on=about, bed=bed)
 
 
 def _check_setting(place: str, key: str, value: Any, models: list[str]) -> None:
-    keys = (*SETTINGS, *MEASURED, *OTHERS)
+    keys = (*SETTINGS, *BED_SETTINGS, *MEASURED, *OTHERS)
     if key not in keys:
         raise UserError(f"{place}: {key} is an unknown key{guess(key, keys)}; known are {', '.join(keys)}")
     if key in OTHERS or (key in SETTINGS[:2] and value == AUTO):

@@ -5,13 +5,14 @@ from pathlib import Path
 
 from bedchain.case.load import load_case
 from bedchain.case.parameters import fluidization_line, liggghts_text, openfoam_text, solver_parameters
+from bedchain.case.presets import preset_named, with_preset_bed
 from bedchain.case.schema import load_schema
 from bedchain.dem.disk import require_disk, run_bytes
 from bedchain.dem.memory import require_memory
 from bedchain.files import write_text
 
 
-def write_parameters(case_file: Path, folder: Path) -> None:
+def write_parameters(case_file: Path, folder: Path, preset: str | None = None) -> None:
     """Check a case, the memory and the disk, then write both parameter files.
 
     Parameters
@@ -20,6 +21,8 @@ def write_parameters(case_file: Path, folder: Path) -> None:
         The case.
     folder : Path
         Gets ``parameters.lig`` and ``caseParameters``; made where missing. Equal files are left alone.
+    preset : str, optional
+        Whose bed it is; by default that of the case's key ``preset``, if any.
 
     Raises
     ------
@@ -27,6 +30,8 @@ def write_parameters(case_file: Path, folder: Path) -> None:
         Where the case cannot be run, or memory or disk do not hold it; nothing is written then.
     """
     case = load_case(case_file)
+    if preset := preset or case.get("preset"):
+        case = with_preset_bed(case, preset_named(preset))
     require_memory(case)
     parameters = solver_parameters(case, load_schema())
     folder.mkdir(parents=True, exist_ok=True)

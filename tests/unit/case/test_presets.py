@@ -8,9 +8,11 @@ import yaml
 
 from bedchain.case.chosen import is_auto
 from bedchain.case.load import give_hint, load_case
-from bedchain.case.presets import Preset, preset_named, read_presets, with_preset
+from bedchain.case.presets import Preset, preset_named, read_presets, with_preset, with_preset_bed
+from bedchain.dem.parameter_files import write_parameters
+from bedchain.dem.segments import read_parameters
 from bedchain.errors import CaseError, UserError
-from bedchain.workflow import case_or_exit, preset_name
+from bedchain.workflow import case_or_exit, preset_name, simulated_case
 from made import ROOT
 
 FAST = {"cell_m": 0.02, "lag_s": 0.2, "model": "static", "cost_s": 0.01, "error_floors": 2.5}
@@ -151,3 +153,50 @@ def test_a_preset_may_leave_cells_and_lag_to_the_rule(short, tmp_path):
     changed = with_preset(short, read_presets(file)["own"])
     assert is_auto(changed) and changed["chain"]["models"] == ["dynamic"]
     assert changed["cells"] == {"columns": "auto", "rows": "auto"} and changed["chain"]["lag_s"] == "auto"
+
+
+def test_a_preset_changes_the_bed_as_far_as_the_case_allows(short, caplog):
+    bed = {"young_modulus_times": 0.1, "parcel_diameters": 2.0, "gas_step_times": 2.0}
+    stiff = copy.deepcopy(short)
+    stiff["contact"]["young_modulus_Pa"] *= 100
+    stiff["time"]["dem_step_s"] /= 10
+    fast = with_preset_bed(stiff, Preset("fast", 0.02, 0.2, "static", bed=bed))
+    assert fast["contact"]["young_modulus_Pa"] == pytest.approx(stiff["contact"]["young_modulus_Pa"] / 10)
+    # with its root, as near as the gas step divides
+    assert 2.4 < fast["time"]["dem_step_s"] / stiff["time"]["dem_step_s"] <= 10**0.5
+    assert fast["time"]["gas_step_s"] == 2 * short["time"]["gas_step_s"] and not caplog.records
+    assert fast["particles"]["parcel_diameters"] == 2 and short["particles"]["parcel_diameters"] == 1
+    # particles that would be too soft, and parcels too wide for the gas cells, are left out by name
+    same = with_preset_bed(short, Preset("fast", 0.02, 0.2, "static", bed=bed | {"parcel_diameters": 9.0}))
+    assert same["contact"] == short["contact"] and same["particles"] == short["particles"]
+    assert same["time"]["gas_step_s"] == fast["time"]["gas_step_s"]
+    assert [record.args[:2] for record in caplog.records] == [
+        ("fast", "young_modulus_times"),
+        ("fast", "parcel_diameters"),
+    ]
+
+
+def test_a_bed_without_gas_takes_only_what_concerns_particles(caplog):
+    drum = load_case(ROOT / "cases" / "drum" / "case.yaml")
+    bed = {"young_modulus_times": 0.1, "parcel_diameters": 2.0, "gas_step_times": 2.0}
+    softer = with_preset_bed(drum, Preset("fast", 0.02, 0.2, "static", bed=bed))
+    assert softer["particles"] == drum["particles"] and not caplog.records
+    assert softer["contact"]["young_modulus_Pa"] == pytest.approx(drum["contact"]["young_modulus_Pa"] / 10)
+
+
+def test_only_a_simulated_bed_is_that_of_the_preset(short, paper):
+    assert simulated_case(short, "fast", None)["particles"]["parcel_diameters"] == 2
+    assert simulated_case(short | {"preset": "fast"}, None, None)["particles"]["parcel_diameters"] == 2
+    assert simulated_case(paper, "fast", ROOT / "cases" / "paper" / "reference") is paper
+    assert simulated_case(short, None, None) is short
+    frames = short | {"frames": {"files": "*.dump"}}
+    assert simulated_case(frames, "fast", None) is frames
+
+
+def test_the_solvers_get_the_bed_of_the_preset(tmp_path, monkeypatch):
+    monkeypatch.chdir(ROOT)
+    case = ROOT / "cases" / "short" / "case.yaml"
+    for preset, folder in ((None, "own"), ("fast", "fast")):
+        write_parameters(case, tmp_path / folder, preset)
+    own, fast = (read_parameters(tmp_path / name / "parameters.lig") for name in ("own", "fast"))
+    assert own["number"] == 4 * fast["number"] and fast["particles_per_parcel"] == 4

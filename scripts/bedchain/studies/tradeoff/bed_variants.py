@@ -4,12 +4,10 @@
 import math
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
-from fractions import Fraction
 from typing import Any
 
 from bedchain.case.bed_checks import CARRYING_KEYS, particles_carry_the_bed
-from bedchain.case.checks import physical_problems
-from bedchain.case.scene_checks import checked_keys
+from bedchain.case.bed_settings import coupling_s, gas_cell, gas_step, parcels, problems_with, stiffness
 from bedchain.case.schema import Case, case_value, load_schema
 from bedchain.case.variants import Variant
 from bedchain.errors import UserError, report_user_errors
@@ -128,26 +126,13 @@ def variants_or_exit(option: object, case: Case, archived: bool) -> list[str]:
         return wanted_variants(option, case, archived)
 
 
-def dividing_cell(case: Case, factor: float) -> float:
-    """Size of square gas cells that divide the bed, as near as possible to `factor` times the case's [m]."""
-    width, height = (Fraction(repr(case["bed"][name])) for name in ("width_m", "height_m"))
-    shape = height / width
-    wanted = float(width) / (case["gas"]["cell_size_m"] * factor)
-    least = shape.denominator  # columns must be a multiple of it for whole rows
-    return float(width / (least * max(1, round(wanted / least))))
-
-
 def _particles(case: Case) -> Iterator[tuple[str, str, dict[str, Any]]]:
-    step, gas_step = case["time"]["dem_step_s"], _coupling(case)
     for factor in STIFFNESSES:
-        young = case["contact"]["young_modulus_Pa"] * factor
-        if any(particles_carry_the_bed(young, *_weight_of(case))):
-            continue
-        shorter = dividing_step(gas_step, step / math.sqrt(factor))
-        changes = {"contact.young_modulus_Pa": young, "time.dem_step_s": shorter}
-        yield "stiffness and step", f"stiffness_{factor:g}", changes
+        softer = stiffness(case, factor)
+        if not any(particles_carry_the_bed(softer["contact.young_modulus_Pa"], *_weight_of(case))):
+            yield "stiffness and step", f"stiffness_{factor:g}", softer
     for factor in STEPS:
-        changes = {"time.dem_step_s": dividing_step(gas_step, step * factor)}
+        changes = {"time.dem_step_s": dividing_step(coupling_s(case), case["time"]["dem_step_s"] * factor)}
         # Young's modulus stays: the share of the Rayleigh time is another
         yield "particle step", f"step_{factor:g}", changes | {"time.allow_unstable_step": True}
     for value in FRICTIONS:
@@ -167,13 +152,12 @@ def _particles(case: Case) -> Iterator[tuple[str, str, dict[str, Any]]]:
 def _gas(case: Case) -> Iterator[tuple[str, str, dict[str, Any]]]:
     time = case["time"]
     for size in PARCELS:
-        if _takes_parcels(case, size):
-            yield "parcels", f"parcels_{size:g}", {"particles.parcel_diameters": size}
+        if not problems_with(case, parcels(size)):
+            yield "parcels", f"parcels_{size:g}", parcels(size)
     for factor in GAS_STEPS:
-        step = dividing_step(time["frame_interval_s"], time["gas_step_s"] * factor)
-        yield "gas step", f"gas_step_{factor:g}", _with_gas_step(case, step)
+        yield "gas step", f"gas_step_{factor:g}", gas_step(case, factor)
     for factor in GAS_CELLS:
-        yield "gas cell", f"gas_cell_{factor:g}", {"gas.cell_size_m": dividing_cell(case, factor)}
+        yield "gas cell", f"gas_cell_{factor:g}", gas_cell(case, factor)
     for value in SMOOTHINGS:
         yield "smoothing", f"smoothing_{value:g}", {"gas.smoothing_diameters_1": value}
     for value in PRESSURE_TOLERANCES:
@@ -184,40 +168,19 @@ def _gas(case: Case) -> Iterator[tuple[str, str, dict[str, Any]]]:
         thickness = value * case["particles"]["diameter_m"]
         yield "slab thickness", f"thickness_{value:g}", {"bed.thickness_m": thickness}
     for size, longer, wider in COMBINATIONS:
-        if _takes_parcels(case, size):
-            step = dividing_step(time["frame_interval_s"], time["gas_step_s"] * longer)
-            changes = {"particles.parcel_diameters": size} | _with_gas_step(case, step)
-            if wider != 1:
-                changes["gas.cell_size_m"] = dividing_cell(case, wider)
+        if not problems_with(case, parcels(size)):
+            changes = parcels(size) | gas_step(case, longer) | (gas_cell(case, wider) if wider != 1 else {})
             yield "combination", f"parcels_{size:g}_gas_step_{longer:g}_gas_cell_{wider:g}", changes
     yield "ablation", "ramp_none", {"time.ramp_s": time["gas_step_s"]}
-    fine = {"gas.cell_size_m": dividing_cell(case, 0.5)}
+    fine = gas_cell(case, 0.5)
     same_kernel = math.sqrt(2) * case["gas"]["cell_size_m"] / case["particles"]["diameter_m"]
     yield "pair", "gas_cell_0.5_same_kernel", fine | {"gas.smoothing_diameters_1": same_kernel}
-    shorter = _with_gas_step(case, dividing_step(time["frame_interval_s"], time["gas_step_s"] * 0.5))
-    yield "pair", "gas_cell_0.5_gas_step_0.5", fine | shorter
+    yield "pair", "gas_cell_0.5_gas_step_0.5", fine | gas_step(case, 0.5)
 
 
 def _weight_of(case: Case) -> list[float]:
     """Values of a case that `particles_carry_the_bed` takes after Young's modulus."""
     return [case_value(case, key) for key in CARRYING_KEYS]
-
-
-def _takes_parcels(case: Case, size: float) -> bool:
-    """Whether parcels of so many diameters go with a case."""
-    changed = case | {"particles": case["particles"] | {"parcel_diameters": size}}
-    return not physical_problems(checked_keys(changed), set(), {})
-
-
-def _with_gas_step(case: Case, gas_step_s: float) -> dict[str, Any]:
-    step = dividing_step(gas_step_s, case["time"]["dem_step_s"])
-    return {"time.gas_step_s": gas_step_s, "time.dem_step_s": step}
-
-
-def _coupling(case: Case) -> float:
-    """Time that the particles' step must divide [s]: the gas step or, without gas, the frame interval."""
-    time, gas = case["time"], case["gas"]["model"] != "none"
-    return float(time["gas_step_s"] if gas else time["frame_interval_s"])
 
 
 def _step(bed: BedVariant, case: Case) -> float:
