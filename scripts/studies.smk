@@ -10,7 +10,7 @@
 import shlex
 
 from bedchain.case.two_fluid import two_fluid_grids
-from bedchain.studies.tradeoff.bed_variants import variants_or_exit
+from bedchain.studies.tradeoff.bed_variants import parcel_beds, variants_or_exit
 from bedchain.rule_files import dated
 from bedchain.workflow import peers_or_exit
 
@@ -242,6 +242,8 @@ rule score_presets:
 # (cases/<case>/two_fluid) or are made, on two grids, where the bed can be one of two fluids.
 ARCHIVED_TWO_FLUID = source_files(f"cases/{NAME}", "two_fluid/*/record.json")
 TWO_FLUID_MM = [] if ARCHIVED_TWO_FLUID else two_fluid_grids(CASE)
+# the same bed of parcels, where it is simulated; one that ran elsewhere is in cases/<case>/ladder
+PARCEL_BEDS = {} if REFERENCE or FRAMES else parcel_beds(CASE)
 
 
 rule ladder:
@@ -251,6 +253,25 @@ rule ladder:
 
 
 include: "run_two_fluid.smk"
+
+
+rule answer_bed:
+    input:
+        code("answer_bed"),
+        record=f"{RESULTS}/tradeoff/{{variant}}/variant.json",
+        choice=list(SETTLED.values()),
+    output:
+        answer=f"{RESULTS}/ladder/{{variant}}.json",
+    log:
+        f"{LOGS}/answer_bed_{{variant}}.log",
+    wildcard_constraints:
+        variant=r"[\w.-]+",
+    conda:
+        "../envs/python.yaml"
+    params:
+        model=lambda wildcards: f"bedFoam, {PARCEL_BEDS[wildcards.variant]}",
+    script:
+        "answer_bed.py"
 
 
 # Alone on the machine, since it measures times.
@@ -264,7 +285,8 @@ rule study_ladder:
         mixing=f"{RESULTS}/mixing.csv",
         choice=CHOICE,
         two_fluid=ARCHIVED_TWO_FLUID + expand(f"{BED}/two_fluid/{{mm}}mm/record.json", mm=TWO_FLUID_MM),
-        others=source_files(f"cases/{NAME}", "ladder/*.json"),
+        others=source_files(f"cases/{NAME}", "ladder/*.json")
+        + expand(rules.answer_bed.output.answer, variant=PARCEL_BEDS),
     output:
         ladder=f"{RESULTS}/ladder.csv",
     log:

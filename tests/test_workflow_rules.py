@@ -13,7 +13,7 @@ SCRIPTS = ROOT / "scripts"
 OTHERS = {
     *("validate_bed", "write_agreement", "estimate_cost", "list_left_out"),
     *("measure_residence", "plot_residence", "measure_segregation", "plot_segregation", "plot_scalar"),
-    *("study_ladder", "plot_ladder", "score_presets"),
+    *("study_ladder", "plot_ladder", "score_presets", "answer_bed"),
 }
 OF_NUMBER, OF_WORD = r",[\d.]+}", r",[\w.-]+}"  # a wildcard that is a number, or a word
 BY_SHELL = {"verify_solver", "compare_peers", "study_stability", "study_bands", "study_tradeoff"}

@@ -11,12 +11,13 @@ from numpy.typing import NDArray
 from bedchain.case.parcels import parcel_case
 from bedchain.case.schema import Case
 from bedchain.measures.bubbles import followed_bubbles, middle_of_bed, voidage_maps
-from bedchain.measures.mixing import GROUPS
+from bedchain.measures.mixing import GROUPS, Splits, remaining_from_positions
 from bedchain.measures.spectrum import dominant_frequency
 from bedchain.measures.voidage import Slab
 from bedchain.studies.ladder.answers import Answer, Array, Truth, Values, distance, ladder_rows, of_density
 from bedchain.studies.ladder.stays import stay_in_lower_part, stay_starts
 from bedchain.studies.two_fluid_summary import piece_of
+from bedchain.trajectory.frames import Window
 from bedchain.trajectory.grid import Grid
 from bedchain.trajectory.realisations import Realisation
 from bedchain.uncertainty.deviations import SIDES
@@ -90,6 +91,33 @@ def truth_of(
         if len(curves) > 1:
             floors[f"mixing_{direction}"] = floor_of(of_direction[:, 1:])
     return Truth(values, floors, run.interval_s)
+
+
+def bed_answer(model: str, run: Realisation, series: pd.DataFrame, cost_s: float, case: Case) -> Answer:
+    """What another simulation of the bed says over its comparison window.
+
+    Parameters
+    ----------
+    model : str
+        Its name.
+    run : Realisation
+    series : DataFrame
+        ``bed_series.csv``.
+    cost_s : float
+        Processor time for a simulated second [s].
+    case : dict
+        Its case, with cells and windows of the bed that it is compared with.
+    """
+    windows = [Window(case[name]["start_s"], case[name]["end_s"]) for name in ("learning", "comparison")]
+    spans = windows[0].frames(run.times_s), windows[1].frames(run.times_s)
+    grid = Grid(run.width_m, run.height_m, case["cells"]["columns"], case["cells"]["rows"])
+    values = dict(values_of(run, spans[1], series, grid, case))
+    values["stay_low"] = stays_of(run, spans, case)[0]
+    x_m, z_m = (run.values[spans[1], axis] for axis in (0, 1))
+    curves = remaining_from_positions(x_m, z_m, *Splits(**case["mixing"]))
+    for direction in ("radial", "axial"):
+        values[f"mixing_{direction}"] = curves[:, SIDES[direction]]
+    return Answer(model, values, cost_s, lag_s=run.interval_s, paths=True)
 
 
 def stays_of(run: Realisation, spans: tuple[slice, slice], case: Case) -> tuple[float, float]:

@@ -35,6 +35,7 @@ PRESSURE_TOLERANCES = (1e-5, 1e-9)
 SEED_SPACING = 1000
 SEEDS = 2
 OPTIONS = ("dem",)
+PARCEL_AXIS, PARCEL_KEY = "parcels", "particles.parcel_diameters"
 REALISATION = "realisation"  # axis of the variants that differ only in their random start
 
 
@@ -120,6 +121,13 @@ def wanted_variants(option: object, case: Case, archived: bool) -> list[str]:
     return [name for name in known if name in names]
 
 
+def parcel_beds(case: Case) -> dict[str, str]:
+    """Variants that simulate parcels and change nothing else: what they are, by name."""
+    beds = bed_variants(case).items()
+    sizes = {name: bed.variant.changes.get(PARCEL_KEY) for name, bed in beds if bed.axis == PARCEL_AXIS}
+    return {name: f"parcels of {size:g} diameters" for name, size in sizes.items()}
+
+
 def variants_or_exit(option: object, case: Case, archived: bool) -> list[str]:
     """`wanted_variants`; on an error its message, and snakemake ends before any job."""
     with report_user_errors():
@@ -153,7 +161,7 @@ def _gas(case: Case) -> Iterator[tuple[str, str, dict[str, Any]]]:
     time = case["time"]
     for size in PARCELS:
         if not problems_with(case, parcels(size)):
-            yield "parcels", f"parcels_{size:g}", parcels(size)
+            yield PARCEL_AXIS, f"parcels_{size:g}", parcels(size)
     for factor in GAS_STEPS:
         yield "gas step", f"gas_step_{factor:g}", gas_step(case, factor)
     for factor in GAS_CELLS:
