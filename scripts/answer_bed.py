@@ -1,18 +1,19 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """What a cheaper bed says of the case's bed, for the ladder: results/<case>/ladder/<variant>.json."""
 
+import json
 from pathlib import Path
 
 from bedchain.case.chosen import with_choice
 from bedchain.case.load import load_case
 from bedchain.dem.series import read_series
+from bedchain.errors import UserError
 from bedchain.stage import run_stage
 from bedchain.studies.cost.window_time import dem_row
 from bedchain.studies.ladder.answers import write_answer
 from bedchain.studies.ladder.simulated import bed_answer
-from bedchain.trajectory.realisations import open_realisation
 from bedchain.trajectory.store import read_manifest
-from bedchain.trajectory.stored_dumps import write_trajectory
+from bedchain.trajectory.stored_dumps import parsed_run
 
 
 def answer_bed(record: Path, choice: list[Path], answer: Path, model: str) -> None:
@@ -32,22 +33,17 @@ def answer_bed(record: Path, choice: list[Path], answer: Path, model: str) -> No
     Raises
     ------
     DataError, UserError
-        A frame is missing or damaged; the run does not cover the windows.
+        The variant ended with an error; a frame is missing or damaged.
     """
     folder = record.parent
     case = with_choice(load_case(folder / "case.yaml"), *choice or [folder])
-    trajectory, metadata = folder / "trajectory.npy", folder / "trajectory.json"
-    size = case["bed"]["width_m"], case["bed"]["height_m"]
-    write_trajectory(folder / "dem.json", trajectory, metadata, *size, progress=False)
-    try:
-        run = open_realisation(folder.name, trajectory, metadata)
-        series = read_series(folder / "bed_series.csv")
-        window = case["comparison"]["start_s"], case["comparison"]["end_s"]
-        spent_s = dem_row(read_manifest(folder / "dem.json"), *window)["cpu_s"]
-        write_answer(bed_answer(model, run, series, spent_s / (window[1] - window[0]), case), answer)
-    finally:  # as large as the dumps that it comes from
-        trajectory.unlink(missing_ok=True)
-        metadata.unlink(missing_ok=True)
+    if problem := json.loads(record.read_text(encoding="utf-8"))["problem"]:
+        raise UserError(f"{folder} was not simulated to its end: {problem}")
+    series = read_series(folder / "bed_series.csv")
+    start_s, end_s = case["comparison"]["start_s"], case["comparison"]["end_s"]
+    cost_s = dem_row(read_manifest(folder / "dem.json"), start_s, end_s)["cpu_s"] / (end_s - start_s)
+    with parsed_run(folder, case["bed"]["width_m"], case["bed"]["height_m"]) as run:
+        write_answer(bed_answer(model, run, series, cost_s, case), answer)
 
 
 if rule := globals().get("snakemake"):

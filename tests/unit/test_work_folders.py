@@ -25,7 +25,7 @@ REMOVERS = {
     "gas_case.cut_anew",  # parts that it has just put together
     "segments.keep_own_frames",  # a frame of the segment that was just simulated
     "variant_run.simulate",  # the log of the run before
-    "simulated_beds.bed_observables",  # the trajectory that it has just written
+    "stored_dumps.parsed_run",  # the trajectory that it has just written
     "two_fluid.keep_frames",  # OpenFOAM's fields of the segment that was just simulated
     "benchmark_core.run_task",  # particles that it has just drawn, in a temporary folder
 }

@@ -3,6 +3,8 @@
 
 import json
 import logging
+from collections.abc import Iterator
+from contextlib import contextmanager
 from pathlib import Path
 from typing import Any
 
@@ -13,6 +15,7 @@ from bedchain.errors import DataError, UserError
 from bedchain.files import atomic_file, write_npy_header, write_text
 from bedchain.fingerprints import check_fingerprint
 from bedchain.trajectory.dumps import frame_of, listed, read_dump
+from bedchain.trajectory.realisations import Realisation, open_realisation
 from bedchain.trajectory.store import STORED, check_disk, read_manifest, retract, trajectory_metadata
 
 LOG = logging.getLogger(__name__)
@@ -72,6 +75,31 @@ def write_trajectory(
     assert ids is not None
     write_text(metadata, json.dumps(trajectory_metadata(manifest, ids, width_m, height_m)))
     return manifest
+
+
+@contextmanager
+def parsed_run(folder: Path, width_m: float, height_m: float) -> Iterator[Realisation]:
+    """The frames of a finished run in one file, which is as large as its dumps and goes afterwards.
+
+    Parameters
+    ----------
+    folder : Path
+        With ``dem.json``.
+    width_m, height_m : float
+        Size of the bed [m].
+
+    Raises
+    ------
+    DataError, UserError
+        As `write_trajectory`.
+    """
+    trajectory, metadata = folder / "trajectory.npy", folder / "trajectory.json"
+    try:
+        write_trajectory(folder / "dem.json", trajectory, metadata, width_m, height_m, progress=False)
+        yield open_realisation(folder.name, trajectory, metadata)
+    finally:
+        for file in (trajectory, metadata):
+            file.unlink(missing_ok=True)
 
 
 def _read_frame(

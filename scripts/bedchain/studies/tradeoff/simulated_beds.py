@@ -19,9 +19,8 @@ from bedchain.meter import peak_memory_mb
 from bedchain.studies.tradeoff.bed_variants import REALISATION, BedVariant
 from bedchain.studies.tradeoff.observables import BedObservables, Reference, bed_errors
 from bedchain.studies.tradeoff.reference import window_curves, window_densities, window_scalars
-from bedchain.trajectory.realisations import Realisation, open_realisation
 from bedchain.trajectory.store import read_manifest
-from bedchain.trajectory.stored_dumps import write_trajectory
+from bedchain.trajectory.stored_dumps import parsed_run
 
 LOG = logging.getLogger(__name__)
 
@@ -115,22 +114,10 @@ def on_one_rank(variant: Variant) -> Variant:
 
 
 def bed_observables(folder: Path, case: Case) -> BedObservables:
-    """Observables of a finished run; its trajectory is deleted."""
-    try:
-        run = parsed(folder, case)
+    """Observables of a finished run."""
+    with parsed_run(folder, case["bed"]["width_m"], case["bed"]["height_m"]) as run:
         scalars = window_scalars(run, read_series(folder / "bed_series.csv"), case)
         return BedObservables(window_curves(run, case), window_densities(run, case), scalars)
-    finally:
-        for name in ("trajectory.npy", "trajectory.json"):
-            (folder / name).unlink(missing_ok=True)
-
-
-def parsed(folder: Path, case: Case) -> Realisation:
-    """The frames of a run, in one file."""
-    trajectory, metadata = folder / "trajectory.npy", folder / "trajectory.json"
-    size = case["bed"]["width_m"], case["bed"]["height_m"]
-    write_trajectory(folder / "dem.json", trajectory, metadata, *size, progress=False)
-    return open_realisation(folder.name, trajectory, metadata)
 
 
 def watched(work: Callable[[], Made], word: str, kept: Path) -> tuple[Made, float]:
