@@ -40,6 +40,8 @@ def solver_environment() -> dict[str, str]:
     environment = {name: value for name, value in os.environ.items() if not name.startswith(hidden)}
     environment.setdefault("WM_PROJECT_DIR", "/usr/share/openfoam")
     environment.setdefault("OMPI_MCA_rmaps_base_oversubscribe", "1")
+    # a single rank needs no daemon beside it: half of the processor time of a start
+    environment.setdefault("OMPI_MCA_ess_singleton_isolated", "1")
     # bedFoam's guards report an overflow with place and time; OpenFOAM's trap gives neither
     environment.setdefault("FOAM_SIGFPE", "false")
     # on a busy machine a waiting rank yields its core

@@ -21,6 +21,7 @@ DECKS = Path("liggghts_inputs")
 GAS_CASE = Path("openfoam_case")
 TIGHT = 1e-13  # tolerance of the linear solvers for results to round-off
 FRAMES = 4  # the fewest for the windows of a case, which the checks do not use
+GAS_STEP_S = 5e-4  # around frozen spheres
 
 
 @dataclass(frozen=True)
@@ -46,7 +47,10 @@ class Setup:
 
 
 def case_of(setup: Setup) -> dict[str, Any]:
-    """Content of the case file; sections that the checks do not use are filled in for the schema."""
+    """Content of the case file; sections that the checks do not use are filled in for the schema.
+
+    Frozen spheres take one step for each of the gas: whatever their step is, they stay where they are.
+    """
     sections = setup.sections
     frame = sections["time"]["frame_interval_s"]
     moments = {"figures": {"moments_s": [frame], "batch_height_m": sections["bed"]["height_m"] / 2}}
@@ -60,8 +64,12 @@ def case_of(setup: Setup) -> dict[str, Any]:
     }
     case: dict[str, Any] = {"title": setup.folder.name, "seed": 10007, **moments, **windows}
     time = {"settle_s": frame, "ramp_s": frame, "end_s": FRAMES * frame, "segment_s": frame}
+    time |= sections["time"]
+    if setup.numbers.get("frozen"):
+        step = time.get("gas_step_s", GAS_STEP_S)
+        time |= {"gas_step_s": step, "dem_step_s": step, "allow_unstable_step": True}
     particles = {"number": len(setup.particles)} | sections.get("particles", {})
-    return case | sections | {"time": time | sections["time"], "particles": particles}
+    return case | sections | {"time": time, "particles": particles}
 
 
 def write_inputs(setup: Setup) -> dict[str, Any]:

@@ -16,7 +16,7 @@ ROUND_OFF = 1e-11  # relative: sums over some hundred particles, and a linear so
 ENERGY_STORED = 1e-6  # of the energy at the start: what tangential springs hold, which is not counted
 WIDTH, HEIGHT, NUMBER, DIAMETER = 0.04, 0.08, 600, 1e-3
 YOUNG, POISSON = 1.9e6, 0.3
-SETTLE, FRAME = 0.5, 1e-3  # [s]
+SETTLE, FRAME = 0.3, 1e-3  # [s]
 FLUIDIZE, VELOCITY = 0.04, 1.5  # [s], [m/s]
 
 

@@ -1,6 +1,8 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Minimum fluidization: gas through a settled bed, faster and then slower, and its pressure drop."""
 
+from dataclasses import replace
+from functools import cache
 from pathlib import Path
 
 import numpy as np
@@ -18,14 +20,13 @@ from bedchain.studies.verification.laws import (
 )
 from bedchain.studies.verification.plots import Curve, draw
 from bedchain.studies.verification.rows import Row
-from bedchain.studies.verification.settled_bed import random_bed, settled
+from bedchain.studies.verification.settled_bed import DIAMETER, settled
 from bedchain.uncertainty.bands import block_error, kept_blocks, kept_steps, mean_error
 
 NEAR = 0.10
 NEAR_WEIGHT = 0.02
-WIDTH, HEIGHT, NUMBER, DIAMETER = 0.04, 0.12, 2000, 1e-3  # settles about 5 cm deep
-FRICTION = 0.1  # less than a case's: a bed held by its side walls lets the gas carry less than its weight
-FASTEST, RAMP, HOLD = 0.85, 0.3, 0.2  # [m/s], [s] up and as long down, [s] at the fastest
+WIDTH, NUMBER = 0.03, 1500  # settles about 5 cm deep
+FASTEST, RAMP, HOLD = 0.85, 0.3, 0.1  # [m/s], [s] up and as long down, [s] at the fastest
 PACKED = (0.3, 0.75)  # of u_mf: the part of the curve to which Ergun's form is fitted
 SOURCE = "Ergun 1952 with the bed's own bulk voidage {:.3f}: pressure drop = weight"
 UP, DOWN = (0.0, RAMP), (RAMP + HOLD, 2 * RAMP + HOLD)
@@ -66,10 +67,10 @@ def fitted_onset(
     return onset(np.ones(len(speed))), float(block_error(left_out))
 
 
+@cache
 def ramped_bed(work: Path, solver: Path) -> tuple[Setup, pd.DataFrame]:
-    """Settle a bed, then ramp the gas up and down."""
-    heap = random_bed(work / "ramp_settling", WIDTH, HEIGHT, NUMBER, friction_1=FRICTION)
-    setup = settled(work, "ramp", heap, {})
+    """Ramp the gas up and down through the settled bed."""
+    setup = replace(settled(work, WIDTH, NUMBER), folder=work / "ramp")
     ends = f"({RAMP} {FASTEST}) ({RAMP + HOLD} {FASTEST}) ({2 * RAMP + HOLD} 0)"
     return setup, run_gas(setup, solver, DOWN[1], f"table ((0 0) {ends})", row_every=1)
 

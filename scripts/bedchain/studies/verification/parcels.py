@@ -5,16 +5,25 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
+import pandas as pd
 
 from bedchain.dem.lattices import lattice, spheres_at_rest
 from bedchain.dem.small_cases import Setup, run_gas, run_particles
 from bedchain.physics.parcels import parcel_restitution
 from bedchain.studies.verification import settling, uniform_bed
-from bedchain.studies.verification.fluidization import FASTEST, RAMP, fitted_onset
+from bedchain.studies.verification.fluidization import (
+    FASTEST,
+    NUMBER,
+    RAMP,
+    UP,
+    WIDTH,
+    fitted_onset,
+    ramped_bed,
+)
 from bedchain.studies.verification.laws import LAWS, ergun_gradient, minimum_fluidization, suspension
 from bedchain.studies.verification.plots import Curve, draw
 from bedchain.studies.verification.rows import Row
-from bedchain.studies.verification.settled_bed import CELL, random_bed, settled
+from bedchain.studies.verification.settled_bed import CELL, HEIGHT, settled
 from bedchain.uncertainty.bands import block_error, kept_blocks, kept_steps
 
 NEAR_DRAG, NEAR_ONSET, NEAR_RESTITUTION, NEAR_COOLING = 0.001, 0.02, 0.005, 0.05
@@ -23,8 +32,8 @@ DIAMETER = 1e-3  # of a particle [m]
 RESTITUTION = 0.9
 SIZES = (2.0, 4.0)  # of the impacts
 SPEED = 0.5  # [m/s], of either parcel before an impact
+LAW = "beetstra"  # of the fall
 DEEP = 5.0  # [m], of the slab that a parcel falls in: the gas of one cell weighs more than 10 000 parcels
-HEAP = (0.04, 0.08, 1500)  # width, height [m] and particles of the bed that is fluidized
 VOIDAGE = 0.5  # of the bed, to find the packed part of its curve
 COLLIDING = 2500  # parcels of the granular gas
 COVERED = 0.2  # of the plane, by the parcels
@@ -34,24 +43,21 @@ MIXED = 0.016  # [s], two collisions: the lattice of the start is forgotten
 
 
 def check_fall(work: Path, solver: Path, figures: Path) -> list[Row]:
-    """Rows and figure of a parcel that falls as fast as its particles, by each drag law."""
-    rows, curves = [], []
-    for name, law in LAWS.items():
-        single = settling.setup_of(work / f"parcel_falls_{name}", name)
-        sections = single.sections | {
-            "bed": single.sections["bed"] | {"thickness_m": DEEP},
-            "particles": single.sections["particles"] | {"parcel_diameters": SIZE},
-        }
-        parcel = single.particles * [1, 1, 1, 1, SIZE]
-        setup = Setup(single.folder, sections, parcel, single.numbers | {"number": 1})
-        times, momentum, theory = settling.fall(setup, solver, law, settling.DURATION, row_every=20)
-        speed = momentum * SIZE**-1.5  # the energy is that of a parcel, the mass a particle's
-        source = f"{settling.SOURCE.format(name)}, of one particle"
-        quantity = f"speed of a falling parcel of {SIZE:g} diameters at the end, {name} [m/s]"
-        rows.append(Row(quantity, speed[-1], theory[-1], NEAR_DRAG, source))
-        curves.append(Curve(name, times, speed, theory))
-    draw(figures / "parcel_falls", curves, "time [s]", "speed of a falling parcel [m/s]")
-    return rows
+    """Row and figure of a parcel that falls as fast as its particles: all drag laws are scaled alike."""
+    single = settling.setup_of(work / "parcel_falls", LAW)
+    sections = single.sections | {
+        "bed": single.sections["bed"] | {"thickness_m": DEEP},
+        "particles": single.sections["particles"] | {"parcel_diameters": SIZE},
+    }
+    parcel = single.particles * [1, 1, 1, 1, SIZE]
+    setup = Setup(single.folder, sections, parcel, single.numbers | {"number": 1})
+    times, momentum, theory = settling.fall(setup, solver, LAWS[LAW], settling.DURATION, row_every=5)
+    speed = momentum * SIZE**-1.5  # the energy is that of a parcel, the mass a particle's
+    curve = Curve(LAW, times, speed, theory)
+    draw(figures / "parcel_falls", [curve], "time [s]", "speed of a falling parcel [m/s]")
+    source = f"{settling.SOURCE.format(LAW)}, of one particle"
+    quantity = f"speed of a falling parcel of {SIZE:g} diameters at the end, {LAW} [m/s]"
+    return [Row(quantity, speed[-1], theory[-1], NEAR_DRAG, source)]
 
 
 def check_lattice(work: Path, solver: Path) -> list[Row]:
@@ -77,30 +83,27 @@ def check_lattice(work: Path, solver: Path) -> list[Row]:
     ]  # fmt: skip
 
 
-def onset(setup: Setup, solver: Path) -> tuple[float, float]:
+def onset(setup: Setup, table: pd.DataFrame) -> tuple[float, float]:
     """Minimum fluidization velocity of a settled bed as gas rises through it, and its error [m/s]."""
-    table = run_gas(setup, solver, RAMP, f"table ((0 0) ({RAMP} {FASTEST}))")
     of, bed = suspension(setup), setup.sections["bed"]
     size = setup.particles[0, 4] / DIAMETER
     weight = len(setup.particles) * size**3 * of.weight / (bed["width_m"] * size * DIAMETER)
-    return fitted_onset(table, (0.0, RAMP), weight, minimum_fluidization(of, VOIDAGE))
+    return fitted_onset(table, UP, weight, minimum_fluidization(of, VOIDAGE))
 
 
 def check_onset(work: Path, solver: Path, figures: Path) -> list[Row]:
     """Row and figure of the velocity that fluidizes a bed of parcels, packed as one of particles is."""
-    width, height, number = HEAP
-    heap = random_bed(work / "rise_settling", width, height, number, friction_1=0.1)
-    single = settled(work, "particles_rise", heap, {})
+    single = settled(work, WIDTH, NUMBER)
     sections = single.sections | {
-        "bed": {"width_m": width * SIZE, "height_m": height * SIZE},
-        "particles": {"number": round(number * SIZE**2), "parcel_diameters": SIZE},
+        "bed": {"width_m": WIDTH * SIZE, "height_m": HEIGHT * SIZE},
+        "particles": {"number": round(NUMBER * SIZE**2), "parcel_diameters": SIZE},
         # as many parcels in a cell as particles: the surface of the bed is as sharp
         "gas": {"cell_size_m": CELL * SIZE},
     }
     x, z = single.particles[:, :2].T * SIZE
-    scaled = spheres_at_rest(x, z, SIZE * DIAMETER)
-    parcels, error = onset(Setup(work / "parcels_rise", sections, scaled), solver)
-    speeds = [onset(single, solver)[0], parcels]
+    scaled = Setup(work / "parcels_rise", sections, spheres_at_rest(x, z, SIZE * DIAMETER))
+    parcels, error = onset(scaled, run_gas(scaled, solver, RAMP, f"table ((0 0) ({RAMP} {FASTEST}))"))
+    speeds = [onset(*ramped_bed(work, solver))[0], parcels]
     draw(
         figures / "parcel_onset",
         [Curve("one packing", np.array([1, SIZE]), np.array(speeds), np.full(2, speeds[0]))],

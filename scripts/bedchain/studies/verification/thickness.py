@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Minimum fluidization by the thickness of the slab: one settled bed, held in place, in four slabs."""
 
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -9,11 +10,11 @@ from scipy.optimize import brentq
 from bedchain.dem.lattices import bulk_voidage, rows_of_voidage
 from bedchain.dem.small_cases import Setup, run_gas
 from bedchain.physics.packing import LAYER_DISTANCE, converted_thickness
-from bedchain.studies.verification.fluidization import DIAMETER, FRICTION, HEIGHT, NUMBER, WIDTH, fitted_onset
+from bedchain.studies.verification.fluidization import fitted_onset
 from bedchain.studies.verification.laws import Suspension, ergun_gradient, suspension
 from bedchain.studies.verification.plots import Curve, draw
 from bedchain.studies.verification.rows import Row
-from bedchain.studies.verification.settled_bed import CELL, random_bed, settled
+from bedchain.studies.verification.settled_bed import CELL, DIAMETER, HEIGHT, NUMBER, WIDTH, settled
 
 NEAR = 0.06  # the kernel smears the bed's surface, 2 %; cells of a row are not alike, 2 %
 RAMP = 0.05  # [s], slow against the gas: its inertia takes 0.2 % of the pressure drop
@@ -45,8 +46,8 @@ def fluidizing_speed(of: Suspension, z: np.ndarray, thickness: float) -> float:
 def onset(bed: Setup, solver: Path, of: Suspension, thickness: float) -> tuple[float, float, float]:
     """Minimum fluidization velocity in a slab of a thickness [m]: measured, its error, and by Ergun [m/s]."""
     slab = {"thickness": thickness, "slab_low": -thickness / 2, "slab_high": thickness / 2}
-    name = f"slab_{thickness / DIAMETER:.3f}"
-    setup = Setup(bed.folder.with_name(name), bed.sections, bed.particles, bed.numbers | slab)
+    folder = bed.folder.with_name(f"slab_{thickness / DIAMETER:.3f}")
+    setup = replace(bed, folder=folder, numbers={"frozen": 1} | slab)
     reference = fluidizing_speed(of, bed.particles[:, 1], thickness)
     table = run_gas(setup, solver, RAMP, f"table ((0 0) ({RAMP} {REACHED * reference}))")
     weight = NUMBER * of.weight / (WIDTH * thickness)
@@ -55,9 +56,8 @@ def onset(bed: Setup, solver: Path, of: Suspension, thickness: float) -> tuple[f
 
 def check(work: Path, solver: Path, figures: Path) -> list[Row]:
     """Rows and figure of u_mf in slabs of several thicknesses, among them that of Hoomans et al. 1996."""
-    heap = random_bed(work / "slab_settling", WIDTH, HEIGHT, NUMBER, friction_1=FRICTION)
-    bed = settled(work, "slab", heap, {"frozen": 1})
-    of = suspension(heap)
+    bed = settled(work)
+    of = suspension(bed)
     solids = 1 - bulk_voidage(bed.particles[:, 1], DIAMETER, WIDTH * DIAMETER)
     converted = converted_thickness(1.5 * solids)
     names = {LAYER_DISTANCE: ", layers of closest packing", converted: ", conversion of Hoomans et al. 1996"}
