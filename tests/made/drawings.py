@@ -33,6 +33,7 @@ class CheckedFiles(FigureFiles):
     def save(self, figure):
         """Refuse text that is cut off or overprinted; save the others."""
         assert not (flaws := layout_flaws(figure)), "\n".join(flaws)
+        figure.set_layout_engine("none")  # it was just worked out
         super().save(figure)
 
 
