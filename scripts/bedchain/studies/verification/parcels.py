@@ -32,7 +32,6 @@ DIAMETER = 1e-3  # of a particle [m]
 RESTITUTION = 0.9
 SIZES = (2.0, 4.0)  # of the impacts
 SPEED = 0.5  # [m/s], of either parcel before an impact
-LAW = "beetstra"  # of the fall
 DEEP = 5.0  # [m], of the slab that a parcel falls in: the gas of one cell weighs more than 10 000 parcels
 VOIDAGE = 0.5  # of the bed, to find the packed part of its curve
 COLLIDING = 2500  # parcels of the granular gas
@@ -43,21 +42,24 @@ MIXED = 0.016  # [s], two collisions: the lattice of the start is forgotten
 
 
 def check_fall(work: Path, solver: Path, figures: Path) -> list[Row]:
-    """Row and figure of a parcel that falls as fast as its particles: all drag laws are scaled alike."""
-    single = settling.setup_of(work / "parcel_falls", LAW)
-    sections = single.sections | {
-        "bed": single.sections["bed"] | {"thickness_m": DEEP},
-        "particles": single.sections["particles"] | {"parcel_diameters": SIZE},
-    }
-    parcel = single.particles * [1, 1, 1, 1, SIZE]
-    setup = Setup(single.folder, sections, parcel, single.numbers | {"number": 1})
-    times, momentum, theory = settling.fall(setup, solver, LAWS[LAW], settling.DURATION, row_every=5)
-    speed = momentum * SIZE**-1.5  # the energy is that of a parcel, the mass a particle's
-    curve = Curve(LAW, times, speed, theory)
-    draw(figures / "parcel_falls", [curve], "time [s]", "speed of a falling parcel [m/s]")
-    source = f"{settling.SOURCE.format(LAW)}, of one particle"
-    quantity = f"speed of a falling parcel of {SIZE:g} diameters at the end, {LAW} [m/s]"
-    return [Row(quantity, speed[-1], theory[-1], NEAR_DRAG, source)]
+    """Rows and figure of a parcel that falls as fast as its particles, by each drag law."""
+    rows, curves = [], []
+    for name, law in LAWS.items():
+        single = settling.setup_of(work / f"parcel_falls_{name}", name)
+        sections = single.sections | {
+            "bed": single.sections["bed"] | {"thickness_m": DEEP},
+            "particles": single.sections["particles"] | {"parcel_diameters": SIZE},
+        }
+        parcel = single.particles * [1, 1, 1, 1, SIZE]
+        setup = Setup(single.folder, sections, parcel, single.numbers | {"number": 1})
+        times, momentum, theory = settling.fall(setup, solver, law, settling.DURATION, row_every=5)
+        speed = momentum * SIZE**-1.5  # the energy is that of a parcel, the mass a particle's
+        source = f"{settling.SOURCE.format(name)}, of one particle"
+        quantity = f"speed of a falling parcel of {SIZE:g} diameters at the end, {name} [m/s]"
+        rows.append(Row(quantity, speed[-1], theory[-1], NEAR_DRAG, source))
+        curves.append(Curve(name, times, speed, theory))
+    draw(figures / "parcel_falls", curves, "time [s]", "speed of a falling parcel [m/s]")
+    return rows
 
 
 def check_lattice(work: Path, solver: Path) -> list[Row]:
