@@ -102,10 +102,12 @@ def save_figure(figure: Figure, png: Path, pdf: Path, resolution_dpi: int) -> No
         Of the png, and of images in the pdf [dots per inch].
     """
     figure.draw_without_rendering()
-    figure.set_layout_engine("none")  # it was just worked out, for both forms
-    for target, metadata in ((png, {"Software": None}), (pdf, {"CreationDate": None})):
-        with atomic_file(target) as temporary:
-            figure.savefig(temporary, dpi=resolution_dpi, metadata=metadata)
+    # the layout was just worked out, for both forms: with any engine, also "none", each is drawn twice
+    with matplotlib.rc_context({"figure.constrained_layout.use": False}):
+        figure.set_layout_engine(None)
+        for target, metadata in ((png, {"Software": None}), (pdf, {"CreationDate": None})):
+            with atomic_file(target) as temporary:
+                figure.savefig(temporary, dpi=resolution_dpi, metadata=metadata)
 
 
 def label_parts(axis: Axis, parts: tuple[float, ...]) -> None:
