@@ -35,7 +35,8 @@ def _doubled(keys, values, bits):  # type: ignore[no-untyped-def]
         if keys[old] != FREE:
             slot = find_slot(more, bits + 1, keys[old])
             more[slot] = keys[old]
-            more_values[slot] = values[old]
+            for column in range(values.shape[1]):  # a whole row takes 4 s more to compile
+                more_values[slot, column] = values[old, column]
     return more, more_values, bits + 1
 
 

