@@ -1,8 +1,9 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Diagnostics of the chains, what they imply and how far they hold: results/<case>/diagnostics.csv."""
 
+from collections.abc import Callable
 from dataclasses import dataclass
-from functools import partial
+from functools import cache, partial
 from pathlib import Path
 
 import numpy as np
@@ -13,6 +14,7 @@ from bedchain.chains import registry
 from bedchain.chains.chain import Chain
 from bedchain.chains.circulation import circulation
 from bedchain.chains.counting import count_moves
+from bedchain.chains.counting_by_block import BlockCounts, count_move_blocks
 from bedchain.chains.estimators import visited_density
 from bedchain.chains.markov_chain import MarkovChain
 from bedchain.chains.passage import top_row
@@ -100,10 +102,11 @@ def diagnose_chains(
     of_paths, of_indices = (
         dict(zip(chains, part, strict=True)) for part in (seeds[: len(chains)], seeds[len(chains) :])
     )
-    density = visited_density(count_moves(frames.cells, run.grid.n_cells, lag))
+    single = count_moves(frames.cells, run.grid.n_cells, lag)
+    density = visited_density(single)
     top = top_row(density, run.grid, TOP_SHARE)
 
-    rows = estimator_rows(frames, run.grid, lag, list(chains))
+    rows = estimator_rows(frames, run.grid, single, list(chains))
     rows += counted_rows(looks, frames, remembered)
     before = run.up_to(learning.start_s, lag, run.grid)
     compared = run.window(comparison)
@@ -115,11 +118,9 @@ def diagnose_chains(
     length_s, height_m = asked.n_steps * lag * frames.interval_s, top * run.grid.cell_height_m
     of_time = np.asarray(moments * (lag * frames.interval_s), np.float64)
     maps: list[pd.DataFrame] = []
+    blocks = cache(lambda at: count_move_blocks(frames.cells, run.grid.n_cells, at))  # once for both models
     for name, markov in with_matrix.items():
-        options = settings.options.get(name, {})
-        relearner = partial(
-            registry.relearner, name, frames, run.grid, estimator=settings.estimator, **options
-        )
+        relearner = partial(relearned, name, frames, run.grid, settings, blocks)
         numbers_of = partial(asked.numbers, of_indices[name])
         checked, first = check_model(name, relearner, frames, looks, lags, remembered, numbers_of)
         stays, share, indices = zip(*map(parted, (first.whole.further, first.left_out.further)), strict=True)
@@ -206,6 +207,16 @@ def parted(numbers: Array) -> tuple[Array, Array, Array]:
     times, share, indices = np.split(numbers, [len(TIMES), len(TIMES) + 1], axis=-1)
     n_moments = indices.shape[-1] // 2
     return times, share[..., 0], indices.reshape(*indices.shape[:-1], 2, n_moments)
+
+
+def relearned(
+    name: str, frames: Frames, grid: Grid, settings: ModelSettings,
+    blocks: Callable[[int], BlockCounts], lag: int,
+) -> Callable[[NDArray[np.bool_]], Chain]:  # fmt: skip
+    """`registry.relearner` at a lag, from counts of blocks that both of the paper's models share."""
+    shared = {"single": blocks(lag)} if name in PAPER_MODELS else {}
+    options = settings.options.get(name, {})
+    return registry.relearner(name, frames, grid, lag, settings.estimator, **shared, **options)
 
 
 def moments_of(n_steps: int) -> NDArray[np.int64]:

@@ -13,6 +13,7 @@ import pandas as pd
 from scipy import special
 
 from bedchain.chains import registry
+from bedchain.chains.counting import count_moves
 from bedchain.chains.registry import CaseChains
 from bedchain.comparison.curves import curve_errors, curves_of
 from bedchain.files import write_csv
@@ -86,10 +87,11 @@ def discuss_errors(
         grid, lag = setting
         known, start = in_memory(grid), run.leading_to(grid, compared.start, lag)
         found = spreading_rows(known, grid, lag)
+        single = count_moves(known.cells, grid.n_cells, lag)  # once for both models
         for name in scanned.names:
             coarser = grid.n_cells <= own_grid.n_cells
             if name == scanned.names[0] or own_grid == grid or (own_lag == lag and coarser):
-                chain = registry.learn(name, known, grid, lag, case.estimator)
+                chain = registry.learn(name, known, grid, lag, case.estimator, single=single)
                 remaining = chain.mixing(start, *splits, lengths[1] // lag)
                 found += error_rows(name, grid, chain.lag_s, remaining, mean[::lag])
                 found += signed_rows(name, grid, chain.lag_s, remaining, curves[:, ::lag])

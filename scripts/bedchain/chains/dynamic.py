@@ -15,7 +15,7 @@ from scipy import sparse
 
 from bedchain.chains.classes import traps
 from bedchain.chains.counting import Counts, count_moves, count_pairs
-from bedchain.chains.counting_by_block import count_move_blocks, count_pair_blocks
+from bedchain.chains.counting_by_block import BlockCounts, count_move_blocks, count_pair_blocks
 from bedchain.chains.estimators import ROUND_OFF, estimated_rows, leak, transition_matrix
 from bedchain.chains.markov_chain import MarkovChain
 from bedchain.errors import DataError
@@ -29,21 +29,26 @@ def learn(
     lag: int = 1,
     estimator: str = "pooled",
     step_weights: NDArray[np.int64] | None = None,
+    single: Counts | None = None,
 ) -> MarkovChain:
-    """Dynamic chain from a window of frames; arguments as `registry.learn`."""
+    """Dynamic chain from a window of frames; arguments as `registry.learn`.
+
+    ``single`` are the counts of `count_moves` with these arguments, where they are known.
+    """
     cells = frames.cells
-    single = count_moves(cells, grid.n_cells, lag, step_weights=step_weights)
+    if single is None:
+        single = count_moves(cells, grid.n_cells, lag, step_weights=step_weights)
     double = count_pairs(cells, grid.n_cells, lag, step_weights=step_weights)
     return from_counts(double, single, grid, lag * frames.interval_s, estimator)
 
 
 def relearner(
-    frames: Frames, grid: Grid, lag: int = 1, estimator: str = "pooled"
+    frames: Frames, grid: Grid, lag: int = 1, estimator: str = "pooled", single: BlockCounts | None = None
 ) -> Callable[[NDArray[np.bool_]], MarkovChain]:
-    """See `registry.relearner`; moves are counted only once."""
-    single = count_move_blocks(frames.cells, grid.n_cells, lag)
+    """See `registry.relearner`; moves are counted once, those of cells only where ``single`` is missing."""
+    blocks = single or count_move_blocks(frames.cells, grid.n_cells, lag)
     double, lag_s = count_pair_blocks(frames.cells, grid.n_cells, lag), lag * frames.interval_s
-    return lambda kept: from_counts(double.of(kept), single.of(kept), grid, lag_s, estimator)
+    return lambda kept: from_counts(double.of(kept), blocks.of(kept), grid, lag_s, estimator)
 
 
 def from_counts(
@@ -118,7 +123,8 @@ def _on_states(
     """
     columns, fell_back = np.empty(both.nnz, np.int32), np.empty(both.nnz, bool)
     begins = np.searchsorted(keys, np.arange(n_cells + 1) * n_cells)
-    _find_states(both.indptr, both.indices, cell_of_state, keys, begins, columns, fell_back)
+    by_cell = np.argsort(cell_of_state, kind="stable")
+    _find_states(both.indptr, both.indices, cell_of_state, by_cell, keys, begins, columns, fell_back)
     lengths = np.diff(both.indptr)
     data = both.data / np.repeat(np.asarray(both.sum(axis=1)).ravel(), lengths)
     shape = (both.shape[0], both.shape[0])
@@ -127,22 +133,26 @@ def _on_states(
 
 
 @njit(cache=True)
-def _find_states(indptr, indices, cell_of_state, keys, begins, columns, fell_back):  # type: ignore[no-untyped-def]
-    """State of each entry, and whether it falls back; ``begins`` are the first pairs from each cell."""
-    n_cells = begins.size - 1
-    for row in range(cell_of_state.size):
+def _find_states(indptr, indices, cell_of_state, by_cell, keys, begins, columns, fell_back):  # type: ignore[no-untyped-def]
+    """State of each entry, and whether it falls back; ``begins`` are the first pairs from each cell.
+
+    Rows are taken by their present cell, whose pairs are listed once.
+    """
+    n_cells, listed = begins.size - 1, np.int64(-1)
+    state_of = np.full(n_cells, -1, np.int32)
+    for row in by_cell:
         cell = cell_of_state[row]
+        if cell != listed:
+            if listed >= 0:
+                for pair in range(begins[listed], begins[listed + 1]):
+                    state_of[keys[pair] - listed * n_cells] = -1
+            for pair in range(begins[cell], begins[cell + 1]):
+                state_of[keys[pair] - np.int64(cell) * n_cells] = pair
+            listed = np.int64(cell)
         for entry in range(indptr[row], indptr[row + 1]):
-            pair = np.int64(cell) * n_cells + indices[entry]
-            low, high = begins[cell], begins[cell + 1]
-            while low < high:
-                middle = (low + high) >> 1
-                if keys[middle] < pair:
-                    low = middle + 1
-                else:
-                    high = middle
-            fell_back[entry] = low == begins[cell + 1] or keys[low] != pair
-            columns[entry] = keys.size + indices[entry] if fell_back[entry] else low
+            state = state_of[indices[entry]]
+            fell_back[entry] = state < 0
+            columns[entry] = keys.size + indices[entry] if state < 0 else state
 
 
 def _open_pairs(

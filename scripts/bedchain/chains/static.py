@@ -8,7 +8,7 @@ from numpy.typing import NDArray
 from scipy import sparse
 
 from bedchain.chains.counting import Counts, count_moves
-from bedchain.chains.counting_by_block import count_move_blocks
+from bedchain.chains.counting_by_block import BlockCounts, count_move_blocks
 from bedchain.chains.estimators import (
     ESTIMATORS,
     estimated_rows,
@@ -30,17 +30,19 @@ def learn(
     lag: int = 1,
     estimator: str = "pooled",
     step_weights: NDArray[np.int64] | None = None,
+    single: Counts | None = None,
 ) -> MarkovChain:
-    """Static chain from a window of frames; arguments as `registry.learn`."""
-    counts = count_moves(frames.cells, grid.n_cells, lag, step_weights=step_weights)
-    return from_counts(counts, grid, lag * frames.interval_s, estimator)
+    """Static chain from a window of frames; arguments as `dynamic.learn`."""
+    if single is None:
+        single = count_moves(frames.cells, grid.n_cells, lag, step_weights=step_weights)
+    return from_counts(single, grid, lag * frames.interval_s, estimator)
 
 
 def relearner(
-    frames: Frames, grid: Grid, lag: int = 1, estimator: str = "pooled"
+    frames: Frames, grid: Grid, lag: int = 1, estimator: str = "pooled", single: BlockCounts | None = None
 ) -> Callable[[NDArray[np.bool_]], MarkovChain]:
-    """See `registry.relearner`; moves are counted only once."""
-    blocks, lag_s = count_move_blocks(frames.cells, grid.n_cells, lag), lag * frames.interval_s
+    """See `dynamic.relearner`."""
+    blocks, lag_s = single or count_move_blocks(frames.cells, grid.n_cells, lag), lag * frames.interval_s
     return lambda kept: from_counts(blocks.of(kept), grid, lag_s, estimator)
 
 

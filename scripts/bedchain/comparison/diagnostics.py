@@ -8,7 +8,7 @@ import pandas as pd
 from numpy.typing import NDArray
 
 from bedchain.chains import dynamic, static
-from bedchain.chains.counting import count_moves, count_pairs
+from bedchain.chains.counting import Counts, count_pairs
 from bedchain.chains.estimators import ESTIMATORS, estimated_rows, visited_density
 from bedchain.chains.first_passage import passage_distribution
 from bedchain.chains.markov_chain import MarkovChain
@@ -42,7 +42,7 @@ def table(rows: Iterable[Metric]) -> pd.DataFrame:
     return pd.DataFrame(list(rows), columns=list(COLUMNS))
 
 
-def estimator_rows(frames: Frames, grid: Grid, lag: int, models: Sequence[str]) -> list[Metric]:
+def estimator_rows(frames: Frames, grid: Grid, single: Counts, models: Sequence[str]) -> list[Metric]:
     """Row sums, leak and long-run density of each estimator, for the static and the dynamic chain.
 
     Parameters
@@ -50,8 +50,8 @@ def estimator_rows(frames: Frames, grid: Grid, lag: int, models: Sequence[str]) 
     frames : Frames
         The learning window.
     grid : Grid
-    lag : int
-        Frames in a step.
+    single : Counts
+        From `count_moves`, of that window.
     models : sequence of str
         Names other than ``static`` and ``dynamic`` are ignored.
 
@@ -60,7 +60,7 @@ def estimator_rows(frames: Frames, grid: Grid, lag: int, models: Sequence[str]) 
     list of dict
         row_sum_error, leak, long_run_total_variation (from the frames' mean density); part = estimator.
     """
-    single = count_moves(frames.cells, grid.n_cells, lag)
+    lag = single.lag
     reports = {"static": static.compare_estimators(single)} if "static" in models else {}
     if "dynamic" in models:
         double = count_pairs(frames.cells, grid.n_cells, lag)

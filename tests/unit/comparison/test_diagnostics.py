@@ -5,6 +5,7 @@ import numpy as np
 import pytest
 
 from bedchain.chains import registry
+from bedchain.chains.counting import count_moves
 from bedchain.comparison import diagnostics
 from bedchain.comparison.metrics import metric
 from bedchain.trajectory.frames import Frames
@@ -28,7 +29,9 @@ def test_a_table_has_its_columns_and_empty_places_where_nothing_was_given():
 def test_estimators_of_both_chains():
     # cell 1 is empty in every other step: literal loses half of its row
     frames = framed(np.array([[0, 0], [1, 0], [0, 0], [1, 0], [0, 0]]), GRID)
-    rows = diagnostics.estimator_rows(frames, GRID, 1, ["static", "dynamic", "jump"])
+    rows = diagnostics.estimator_rows(
+        frames, GRID, count_moves(frames.cells, GRID.n_cells), ["static", "dynamic", "jump"]
+    )
     value = by(rows, "quantity", "source", "part")
     assert {row["source"] for row in rows} == {"static", "dynamic"} and len(rows) == 18
     assert value["row_sum_error", "static", "literal"] == pytest.approx(0.5)
