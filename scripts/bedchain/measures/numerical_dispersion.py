@@ -68,8 +68,7 @@ def spreading(x_m: NDArray[np.floating], z_m: NDArray[np.floating], grid: Grid, 
             now, later = (np.asarray(place[at], np.float64) / size for at in (frame, frame + lag.frames))
             step = later - now
             jump = np.floor(later) - np.floor(now)
-            part = np.abs(step)
-            part -= np.floor(part)  # exact, as the remainder is, at a fraction of its time
+            part = np.abs(step) % 1.0
             moments += (
                 step.mean(),
                 (step**2).mean(),
