@@ -5,7 +5,6 @@ from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy import special
 
 from bedchain.errors import UserError
 from bedchain.trajectory.cell_store import CellStore, frame_at
@@ -128,31 +127,11 @@ def expected_total_variation(shares: NDArray[np.float64], number: int) -> float:
     float
         0 to 1 [1].
     """
+    from scipy.stats import binom  # late: scipy.stats takes a second to load
+
     chance = shares[shares > 0] / shares.sum()
-    hits = np.minimum(np.floor(number * chance), number - 1)
-    deviation = 2 * chance * (1 - chance) * binomial_probability(hits, number - 1, chance)
+    deviation = 2 * chance * (1 - chance) * binom.pmf(np.floor(number * chance), number - 1, chance)
     return float(0.5 * deviation.sum())
-
-
-def binomial_probability(
-    hits: NDArray[np.float64], draws: int, chance: NDArray[np.float64]
-) -> NDArray[np.float64]:
-    """Probability of so many hits among independent draws, (n,) [1].
-
-    As `scipy.stats.binom.pmf`, which takes a second to load; to 1e-9 for 100 000 draws.
-
-    Parameters
-    ----------
-    hits : (n,) array
-        Whole numbers from 0 to ``draws`` [1].
-    draws : int
-        [1].
-    chance : (n,) array
-        Of a hit [1].
-    """
-    missed = draws - hits
-    ways = -special.betaln(1 + missed, 1 + hits) - np.log1p(draws)
-    return np.asarray(np.exp(ways + special.xlogy(hits, chance) + special.xlog1py(missed, -chance)))
 
 
 def total_variation(p: NDArray[np.float64], q: NDArray[np.float64]) -> float:

@@ -7,7 +7,6 @@ import pytest
 from bedchain.errors import UserError
 from bedchain.measures.batch import (
     batch_of,
-    binomial_probability,
     expected_total_variation,
     observed_shares,
     share_by_cell,
@@ -45,14 +44,6 @@ def test_observed_shares_follow_the_batch_only():
 
 def test_total_variation_by_hand():
     assert total_variation(np.array([1.0, 1, 0]), np.array([0, 0.1, 0.1])) == pytest.approx(0.5)
-
-
-def test_probability_of_hits_by_hand_and_of_many_draws():
-    hits = np.array([0.0, 1.0, 2.0, 2.0])
-    chance = np.array([0.25, 0.25, 0.25, 1.0])
-    np.testing.assert_allclose(binomial_probability(hits, 2, chance), [9 / 16, 6 / 16, 1 / 16, 1])
-    all_hits = binomial_probability(np.arange(80_001.0), 80_000, np.full(80_001, 1e-3))
-    assert all_hits.sum() == pytest.approx(1, abs=1e-8)
 
 
 def test_expected_total_variation_is_the_mean_of_draws():
