@@ -58,7 +58,8 @@ def score_presets(
     case = with_choice(case, choice)
     run = open_bed(bed)
     runs = [run, *open_repeats(repeats, run)]
-    learning = Window(case["learning"]["start_s"], case["learning"]["end_s"]).frames(run.times_s)
+    learning_s = case["learning"]["start_s"], case["learning"]["end_s"]
+    learning = Window(*learning_s).frames(run.times_s)
     span = case["comparison"]["start_s"], case["comparison"]["end_s"]
     if Window(*span).frames(run.times_s).start + 1 < learning.stop:
         raise UserError("comparison.start_s is inside the learning window: take at least learning.end_s")
@@ -68,7 +69,8 @@ def score_presets(
     length = held.starts[0].length
     tables = [pd.read_csv(file) for file in curves]
     others = [curves_of(one, one["source"].iloc[0], length + 1) for one in tables]
-    realised = Realised(held, np.array(others), length / apart)
+    before = hold_out([run], grid, learning_s, math.ceil(apart), splits, 0.0, [])
+    realised = Realised(held, np.array(others), length / apart, before.curves)
     if words := shortness(realised.correlation_times):
         LOG.warning("comparison window: %s", words)
     task = Task(grid, splits, case["chain"]["estimator"], math.ceil(apart), length)

@@ -10,6 +10,7 @@ from bedchain.comparison.curves import curve_table
 from bedchain.errors import UserError
 from bedchain.files import write_csv
 from bedchain.measures.mixing import Splits, remaining_from_positions
+from bedchain.studies.preset_scores import EARLIER
 from bedchain.trajectory.store import BedFiles
 from made import ROOT
 from made.persistent_walk import write_bed
@@ -53,13 +54,16 @@ def scored(folder, learning_end_s=START, repeats=True):
 
 def test_a_lag_that_forgets_the_velocity_is_seen_to_be_better(bed):
     table = scored(bed)
-    assert list(table.index) == ["another DEM run", "static", "dynamic", "balanced"]
+    assert list(table.index) == ["another DEM run", EARLIER, "static", "dynamic", "balanced"]
+    # starts of one window share frames: their spread is a little small
+    assert 2**0.5 < table["over_spread_1"][EARLIER] < 2
     assert table["over_spread_1"]["another DEM run"] == pytest.approx(2**0.5)
     assert table["over_spread_1"]["balanced"] < 0.5 * table["over_spread_1"]["static"]
     assert table["lag_s"]["balanced"] == 0.25 and table["cell_m"]["balanced"] == pytest.approx(0.01)
-    assert (table["starts"] == table["starts"].iloc[0]).all() and table["starts"].iloc[0] % 2 == 0
-    parts = table[["learn_s", "between_s", "run_s"]].sum(axis=1)[1:]
-    assert parts.to_numpy() == pytest.approx(table["cost_s"][1:].to_numpy())
+    starts = table["starts"].drop(EARLIER)
+    assert (starts == starts.iloc[0]).all() and starts.iloc[0] % 2 == 0
+    parts = table[["learn_s", "between_s", "run_s"]].sum(axis=1)[2:]
+    assert parts.to_numpy() == pytest.approx(table["cost_s"][2:].to_numpy())
     over_floor = (table["single_error_1"] / table["noise_floor_1"]).to_numpy()
     assert table["over_floor_1"].to_numpy() == pytest.approx(over_floor)
 

@@ -28,6 +28,7 @@ from bedchain.uncertainty.noise_floor import floor_of
 Array = NDArray[np.float64]
 Row = dict[str, Any]
 ANOTHER = "another DEM run"
+EARLIER = "the DEM's own learning window"
 OWN = ("static", "dynamic")  # the paper's chains, at the case's own lag and cells
 
 
@@ -62,11 +63,14 @@ class Realised:
         Curves of all repeats from the window's first frame on; may be empty [1].
     correlation_times : float
         In the comparison window [1].
+    earlier : (n_starts, n_frames, 4) array
+        Curves of the DEM from starts in the learning window, NaN after a start's last frame [1].
     """
 
     held: HeldOut
     repeats: Array
     correlation_times: float
+    earlier: Array
 
     @property
     def spread(self) -> Array:
@@ -117,7 +121,7 @@ def chains_of(
 
 
 def preset_rows(chains: Sequence[NamedChain], learning: slice, realised: Realised, task: Task) -> list[Row]:
-    """Cost and errors of all chains, and first what another DEM run has.
+    """Cost and errors of all chains, and first what the DEM has: another run, and its learning window.
 
     Parameters
     ----------
@@ -133,7 +137,10 @@ def preset_rows(chains: Sequence[NamedChain], learning: slice, realised: Realise
         chain, model, columns, rows, cell_m, lag_s, cost (learn_s, between_s, run_s, cost_s), starts,
         `error_columns`, problem.
     """
-    rows = [{"chain": ANOTHER, "starts": len(realised.held.starts)} | another_run(realised)]
+    rows = [
+        {"chain": ANOTHER, "starts": len(realised.held.starts)} | another_run(realised),
+        {"chain": EARLIER, "starts": len(realised.earlier)} | learning_window(realised),
+    ]
     for chain in chains:
         if chain.candidate is None:
             rows.append({"chain": chain.name, "problem": chain.problem})
@@ -201,7 +208,9 @@ def error_columns(error: Array, realised: Realised) -> Row:
         ci_high_1 from leaving five blocks of the comparison window out in turn; single_error_1 of the first
         start, noise_floor_1, over_floor_1, their ratio; NaN where there is no second start or realisation.
     """
-    error, spread = error[:, 1:], realised.spread
+    error = error[:, 1:]
+    # the spread at the times of the error
+    spread = np.where(np.isfinite(error).any(axis=0), realised.spread, np.nan)
     ratio = _ratio(error, spread)
     blocks = blocks_of_frames(realised.held)
     left_out = [
@@ -225,6 +234,22 @@ def another_run(realised: Realised) -> Row:
         return row
     single = float(rms((realised.repeats - realised.held.curves[0])[:, 1:]))
     return row | {"single_error_1": single, "noise_floor_1": floor, "over_floor_1": single / floor}
+
+
+def learning_window(realised: Realised) -> Row:
+    """The columns of `error_columns` of the DEM's curves from the learning window, all pairs of starts.
+
+    A bed whose flow lasts as long as the windows is not the same in both: its starts in one window are alike,
+    and their spread does not say what another one does. This row does; no chain learned there can know more.
+    """
+    earlier, held = realised.earlier, realised.held.curves
+    length = min(earlier.shape[1], held.shape[1])
+    squares = (earlier[:, None, :length] - held[:, :length]) ** 2
+    pairs = np.isfinite(squares).sum(axis=0)
+    mean = np.divide(np.nansum(squares, axis=0), pairs, out=np.full(pairs.shape, np.nan), where=pairs > 0)
+    error = np.full(held.shape, np.nan)
+    error[:, :length] = np.sqrt(mean)
+    return error_columns(error, realised)
 
 
 def blocks_of_frames(held: HeldOut) -> NDArray[np.int64]:

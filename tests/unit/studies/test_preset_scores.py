@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Errors of the presets: units, blocks of time, and settings that do not go with a bed."""
 
+from dataclasses import replace
 from types import SimpleNamespace
 
 import numpy as np
@@ -10,7 +11,14 @@ from bedchain.case.chosen import Chosen
 from bedchain.case.load import load_case
 from bedchain.case.presets import Preset
 from bedchain.studies.marked_starts import Start
-from bedchain.studies.preset_scores import Realised, another_run, blocks_of_frames, chains_of, error_columns
+from bedchain.studies.preset_scores import (
+    Realised,
+    another_run,
+    blocks_of_frames,
+    chains_of,
+    error_columns,
+    learning_window,
+)
 from bedchain.studies.scores.held_out import HeldOut
 from made import ROOT
 
@@ -29,7 +37,8 @@ def held(curves, apart=5):
 def realised():
     rng = np.random.default_rng(3)
     repeats = 0.5 + 0.02 * rng.normal(size=(3, FRAMES, 4))
-    return Realised(held(0.5 + 0.1 * rng.normal(size=(5, FRAMES, 4))), repeats, 20.0)
+    earlier = 0.5 + 0.1 * rng.normal(size=(3, FRAMES, 4))
+    return Realised(held(0.5 + 0.1 * rng.normal(size=(5, FRAMES, 4))), repeats, 20.0, earlier)
 
 
 def test_the_mean_of_all_starts_errs_by_their_spread_and_another_run_by_root_two(realised):
@@ -44,8 +53,23 @@ def test_the_mean_of_all_starts_errs_by_their_spread_and_another_run_by_root_two
     assert columns["over_floor_1"] == columns["single_error_1"] / columns["noise_floor_1"]
 
 
+def test_the_learning_window_errs_as_another_start_does_unless_the_flow_has_changed(realised):
+    assert learning_window(realised)["over_spread_1"] == pytest.approx(2**0.5, abs=0.1)
+    changed = replace(realised, earlier=realised.earlier + 0.2)
+    assert learning_window(changed)["over_spread_1"] == pytest.approx(6**0.5, abs=0.1)
+    pairs = changed.earlier[:, None] - changed.held.curves
+    assert learning_window(changed)["error_1"] == pytest.approx(np.sqrt((pairs[:, :, 1:] ** 2).mean()))
+
+
+def test_starts_of_a_shorter_learning_window_are_compared_while_they_last(realised):
+    short = replace(realised, earlier=realised.earlier[:, :21])
+    few = realised.repeats[:, :21]
+    cut = replace(realised, held=held(realised.held.curves[:, :21]), earlier=short.earlier, repeats=few)
+    assert learning_window(short)["over_spread_1"] == pytest.approx(learning_window(cut)["over_spread_1"])
+
+
 def test_a_single_start_has_no_spread_and_a_run_without_repeats_no_floor(realised):
-    alone = Realised(held(realised.held.curves[:1]), np.zeros((0, 0, 4)), 20.0)
+    alone = Realised(held(realised.held.curves[:1]), np.zeros((0, 0, 4)), 20.0, realised.earlier)
     columns = error_columns(0.5 - alone.held.curves, alone)
     assert np.isnan([columns["over_spread_1"], columns["over_floor_1"], columns["ci_low_1"]]).all()
     assert columns["error_1"] == columns["single_error_1"] > 0
@@ -53,7 +77,7 @@ def test_a_single_start_has_no_spread_and_a_run_without_repeats_no_floor(realise
 
 
 def test_a_window_of_few_correlation_times_has_no_band(realised):
-    short = Realised(realised.held, realised.repeats, 4.0)
+    short = replace(realised, correlation_times=4.0)
     assert np.isnan(error_columns(0.5 - short.held.curves, short)["ci_low_1"])
 
 

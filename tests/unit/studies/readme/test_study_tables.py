@@ -46,17 +46,20 @@ def test_presets_are_held_against_what_another_run_has(tmp_path: Path) -> None:
     }
     rows = [
         {"chain": "another DEM run", "over_spread_1": 1.414, "over_floor_1": 1.48},
+        {"chain": "the DEM's own learning window", "over_spread_1": 1.75, "ci_low_1": 1.0, "ci_high_1": 1.3},
         about | {"chain": "balanced", "over_spread_1": 1.1, "over_floor_1": 1.4},
         about | {"chain": "static", "over_spread_1": 1.1, "over_floor_1": 1.6},
         about | {"chain": "fast", "over_spread_1": 1.7, "over_floor_1": np.nan, "ci_low_1": np.nan},
+        about | {"chain": "dynamic", "over_spread_1": 1.8, "ci_low_1": np.nan},
         {"chain": "too fine", "problem": "no such cells"},
     ]
     pd.DataFrame(rows).to_csv(tmp_path / "preset_errors.csv", index=False)
     table = study_tables.preset_errors(tmp_path)
-    verdicts = ["", "yes", "not from the single start", "no", "no such cells"]
+    than_learned = "no worse than the learning window"
+    verdicts = ["", "", "yes", "not from the single start", than_learned, "no", "no such cells"]
     assert list(table["no worse than another run"]) == verdicts
-    assert table["model, cells, lag"][1] == "static, 1 cm, 0.2 s" and table["cost"][1] == "0.1 s"
-    assert list(table["95 % band"]) == ["", "1 to 1.3", "1 to 1.3", "", ""]
+    assert table["model, cells, lag"][2] == "static, 1 cm, 0.2 s" and table["cost"][2] == "0.1 s"
+    assert list(table["95 % band"]) == ["", *["1 to 1.3"] * 3, "", "", ""]
 
 
 def test_windows_and_maps_hold_their_own_rows_only(tmp_path: Path) -> None:
