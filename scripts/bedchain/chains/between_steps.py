@@ -20,6 +20,7 @@ from bedchain.chains.chain import Chain
 from bedchain.chains.counting import count_moves
 from bedchain.chains.counting_by_block import count_move_blocks
 from bedchain.chains.estimators import transition_matrix
+from bedchain.chains.fraction_shares import ShareFractions
 from bedchain.measures.mixing import Splits, side_shares, sides
 from bedchain.trajectory.frames import Frames
 
@@ -44,6 +45,10 @@ class Fractions:
     def lag(self) -> int:
         """Frames in a step."""
         return len(self.matrices) + 1
+
+    def later(self, frames: int, shares: Array) -> Array:
+        """Shares of the particles of each cell on each side after so many frames, as (n_groups, n_cells)."""
+        return np.asarray((self.matrices[frames - 1] @ shares.T).T)
 
     def arrays(self) -> dict[str, NDArray[Any]]:
         """The matrices as plain arrays, for the file of a chain."""
@@ -109,7 +114,7 @@ def fractions_relearner(
 
 
 def mixing_by_frame(
-    chain: Chain, fractions: Fractions, start: Frames, splits: Splits, length: int,
+    chain: Chain, fractions: Fractions | ShareFractions, start: Frames, splits: Splits, length: int,
     rng: np.random.Generator | None = None,
 ) -> Array:  # fmt: skip
     """Mixing curves of a chain at every frame.
@@ -117,8 +122,8 @@ def mixing_by_frame(
     Parameters
     ----------
     chain : Chain
-    fractions : Fractions
-        Of the same lag and cells.
+    fractions : Fractions or ShareFractions
+        Of the same lag and cells; the latter of the shares of the same lines.
     start : Frames
         As `Chain.mixing`.
     splits : Splits
@@ -143,7 +148,7 @@ def mixing_by_frame(
         density = numbers / marked.sum(axis=1)[:, None]
     curves = np.empty((length + 1, len(shares)))
     for frames in range(lag):
-        later = shares if frames == 0 else (fractions.matrices[frames - 1] @ shares.T).T
+        later = shares if frames == 0 else fractions.later(frames, shares)
         part = np.einsum("tgc,gc->tg", density, later)
         curves[frames::lag] = part[: len(curves[frames::lag])]
     if rng is None:

@@ -15,8 +15,9 @@ from numpy.typing import NDArray
 from bedchain.case.chosen import Chosen
 from bedchain.case.presets import Preset, with_preset
 from bedchain.case.schema import Case
-from bedchain.chains.between_steps import learn_fractions
+from bedchain.chains.fraction_shares import ShareFractions, learn_share_fractions
 from bedchain.errors import DataError, UserError
+from bedchain.measures.mixing import side_shares
 from bedchain.studies.candidates import Candidate, grid_of
 from bedchain.studies.scan import Task, learned, predicted_curves, timed
 from bedchain.studies.scores.held_out import HeldOut
@@ -170,17 +171,21 @@ def predicted(
     curves : (n_starts, n_frames, 4) array
         NaN after a start's last frame [1].
     cost : dict
-        Processor time: learn_s of the chain, between_s of the matrices of fractions of a step, run_s of the
-        curves of one start, cost_s of all [s].
+        Processor time: learn_s of the chain, between_s of the shares a fraction of a step later
+        (`fraction_shares`), run_s of the curves of one start, cost_s of all [s].
     """
     run = held.runs[0]
     grid, lag = grid_of(candidate, task.grid), candidate.lag
     frames = run.frames(grid, learning)
     few = frames.part(slice(0, 2 * lag + 2))  # compiles what is timed
     learned(candidate, few, task).mixing(few, *task.splits, 1)
-    learn_fractions(few, grid.n_cells, lag, task.estimator)
+    learn_share_fractions(few, side_shares(grid, *task.splits), 2, task.estimator)
     chain, learn_s = timed(lambda: learned(candidate, frames, task))
-    fractions, between_s = timed(lambda: learn_fractions(frames, grid.n_cells, lag, task.estimator))
+
+    def shares() -> ShareFractions:
+        return learn_share_fractions(frames, side_shares(grid, *task.splits), lag, task.estimator)[0]
+
+    fractions, between_s = timed(shares)
 
     def of(number: int) -> Array:
         start = held.starts[number]

@@ -18,6 +18,7 @@ from numpy.typing import NDArray
 from bedchain.chains import registry
 from bedchain.chains.between_steps import Fractions, mixing_by_frame
 from bedchain.chains.chain import Chain
+from bedchain.chains.fraction_shares import ShareFractions
 from bedchain.measures.mixing import Splits, remaining_from_positions
 from bedchain.studies.candidates import Candidate, grid_of
 from bedchain.studies.marked_starts import Start
@@ -132,7 +133,12 @@ def observed_curves(run: Realisation, start: Start, splits: Splits) -> NDArray[n
 
 
 def predicted_curves(
-    chain: Chain, run: Realisation, start: Start, lag: int, splits: Splits, fractions: Fractions | None = None
+    chain: Chain,
+    run: Realisation,
+    start: Start,
+    lag: int,
+    splits: Splits,
+    fractions: Fractions | ShareFractions | None = None,
 ) -> NDArray[np.float64]:
     """A chain's expected mixing curves from a start, at every frame, (length + 1, 4).
 

@@ -6,29 +6,17 @@ No frame after the learning window is used: the run is cut at its end.
 
 import logging
 from collections.abc import Sequence
-from functools import partial
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 import pandas as pd
-from numpy.typing import NDArray
 
-from bedchain.chains.between_steps import Fractions, learn_fractions
-from bedchain.chains.chain import Chain
 from bedchain.errors import DataError, UserError
 from bedchain.studies.candidates import Candidate, grid_of
-from bedchain.studies.marked_starts import FOLDS, Start, blocks_of, starts_in, steps_outside
-from bedchain.studies.scan import (
-    Task,
-    learned,
-    named,
-    observed_curves,
-    predicted_curves,
-    running_cost,
-    scan,
-    timed,
-)
+from bedchain.studies.five_folds import over_folds, squared_errors, starts_by_fold
+from bedchain.studies.marked_starts import FOLDS
+from bedchain.studies.scan import Task, learned, named, running_cost, scan, timed
 from bedchain.trajectory.realisations import Realisation
 from bedchain.uncertainty.bands import block_band
 
@@ -55,12 +43,10 @@ def validated(candidate: Candidate, run: Realisation, learning: slice, task: Tas
         leaving each fold out, fold_1 to fold_5 (the rms of each), starts, learn_s, curves_s and paths_s
         (`running_cost`), problem (empty without one).
     """
-    blocks = blocks_of(learning)
     result: dict[str, Any] = {"validation_rms": np.nan, "ci_low": np.nan, "ci_high": np.nan}
     result |= dict.fromkeys(FOLD_COLUMNS, np.nan)
     result |= {"starts": 0, "learn_s": np.nan, "curves_s": np.nan, "paths_s": np.nan, "problem": ""}
-    judged = [_with_past(block, candidate.lag) for block in blocks]
-    starts = [starts_in(block, task.spacing) for block in judged]
+    starts = starts_by_fold(learning, candidate.lag, task.spacing)
     longest = min(start.length for of_block in starts for start in of_block)
     if candidate.lag > longest:
         lag_s, longest_s = (n * run.interval_s for n in (candidate.lag, longest))
@@ -68,55 +54,16 @@ def validated(candidate: Candidate, run: Realisation, learning: slice, task: Tas
     try:
         frames = run.frames(grid_of(candidate, task.grid), learning)
         chain, learn_s = timed(lambda: learned(candidate, frames, task))
-        reach = 2 * candidate.lag if candidate.model == "dynamic" else candidate.lag
-        squares = []
-        for block, of_block in zip(blocks, starts, strict=True):
-            weights = steps_outside(block, learning, reach)
-            padded = np.pad(weights, (0, reach - candidate.lag))
-            without = learned(candidate, frames, task, padded)
-            shorter = learn_fractions(
-                frames, chain.grid.n_cells, candidate.lag, task.estimator,
-                partial(steps_outside, block, learning),
-            )  # fmt: skip
-            squares.append(_squares(without, shorter, run, of_block, task))
+        squares = squared_errors(candidate, run, frames, learning, task)
         cost = running_cost(chain, run.leading_to(chain.grid, starts[-1][0].frame, candidate.lag), task)
     except DataError as problem:
         return result | {"problem": str(problem)}
-    error, ends = _over_folds(squares)
+    error, *ends = over_folds(squares)
     folds = [float(np.sqrt(np.mean(square))) for square in squares]
     return result | dict(zip(FOLD_COLUMNS, folds, strict=True)) | {
         "validation_rms": error, "ci_low": ends[0], "ci_high": ends[1],
         "starts": sum(map(len, starts)), "learn_s": learn_s, **cost,
     }  # fmt: skip
-
-
-def _with_past(block: slice, lag: int) -> slice:
-    """A block less the frames from which a chain that looks back two lags cannot start."""
-    first = min(2 * lag, block.stop - 1 - lag)
-    return slice(max(block.start, first), block.stop)
-
-
-def _squares(
-    chain: Chain, fractions: Fractions, run: Realisation, starts: Sequence[Start], task: Task
-) -> NDArray[np.float64]:
-    """Squared errors of the curves from all starts in a block, (n_times, 4)."""
-    errors = [
-        predicted_curves(chain, run, start, fractions.lag, task.splits, fractions)[1:]
-        - observed_curves(run, start, task.splits)[1:]
-        for start in starts
-    ]
-    return np.concatenate(errors) ** 2
-
-
-def _over_folds(squares: Sequence[NDArray[np.float64]]) -> tuple[float, tuple[float, float]]:
-    """Rms over all folds, and its 95 % band from leaving each fold out."""
-    error = np.sqrt(np.nanmean(np.concatenate(squares)))
-    left_out = [
-        np.sqrt(np.nanmean(np.concatenate([*squares[:fold], *squares[fold + 1 :]])))
-        for fold in range(len(squares))
-    ]
-    low, high = block_band(error, np.array(left_out))
-    return float(error), (max(0.0, float(low)), float(high))
 
 
 def disagreement(table: pd.DataFrame, rule: pd.Series) -> str:
