@@ -13,6 +13,17 @@ import pandas as pd
 from bedchain.studies.readme.case_tables import by_cell_and_lag, number
 
 CELLS_AND_LAGS, WINDOWS = "cells and lag", ("window", "window start")
+# observables of the trade-off that the table of cheaper beds shows
+CHANGES = {
+    "mixing": "mixing curves",
+    "density": "density",
+    "bed_height": "height",
+    "pressure_drop": "pressure drop",
+    "dispersion_x": "dispersion across",
+    "dispersion_z": "dispersion up",
+    "granular_temperature": "granular temperature",
+}
+CHEAPER = ("realisation", "parcels", "combination")  # axes of the trade-off
 # columns of scores.csv that tell chains apart
 CHAIN = ["model", "cell_m", "lag_s", "options"]
 
@@ -93,6 +104,20 @@ def variants(results: Path) -> pd.DataFrame:
             "cost": table["cost_over_base_1"].map(number),
         }
     )
+
+
+def cheaper_beds(results: Path) -> pd.DataFrame:
+    """Beds of parcels beside the bed itself: cost, and what each changes, in noise floors."""
+    table = pd.read_csv(results / "tradeoff.csv")
+    beds = table[(table["half"] == "dem") & table["axis"].isin(CHEAPER)]
+    base = beds.set_index("variant").loc["base"]
+    rows = {
+        "bed": beds["changed"].fillna("the bed itself"),
+        "cost": (beds["cost_s"] / base["cost_s"]).map(number),
+    }
+    for name, title in CHANGES.items():
+        rows[title] = beds[f"{name}_floors_1"].map(number)
+    return pd.DataFrame(rows)
 
 
 def scores(results: Path) -> pd.DataFrame:

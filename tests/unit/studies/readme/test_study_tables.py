@@ -86,6 +86,20 @@ def test_variants_name_what_they_change_most(tmp_path: Path) -> None:
     assert list(study_tables.variants(tmp_path).iloc[0]) == ["drag x", "3", "bed height", "1.5", "1.04"]
 
 
+def test_cheaper_beds_stand_beside_the_bed_itself(tmp_path: Path) -> None:
+    floors = {f"{name}_floors_1": 1.5 for name in study_tables.CHANGES}
+    rows = [
+        {"half": "dem", "axis": "realisation", "variant": "base", "cost_s": 8.0} | floors,
+        {"half": "dem", "axis": "parcels", "variant": "parcels_2", "changed": "l 2", "cost_s": 2.0} | floors,
+        {"half": "dem", "axis": "drag law", "variant": "drag_x", "changed": "x", "cost_s": 8.0} | floors,
+        {"half": "mcm", "axis": "parcels", "variant": "", "cost_s": 8.0} | floors,
+    ]
+    pd.DataFrame(rows).to_csv(tmp_path / "tradeoff.csv", index=False)
+    table = study_tables.cheaper_beds(tmp_path)
+    assert list(table["bed"]) == ["the bed itself", "l 2"] and list(table["cost"]) == ["1", "0.25"]
+    assert set(table.iloc[1, 2:]) == {"1.5"}
+
+
 def test_scores_are_those_in_the_repeats(tmp_path: Path) -> None:
     names = ["model", "cell_m", "lag_s", "options", "quantity", "time_s", "value", "window"]
     rows = [
