@@ -31,7 +31,7 @@ stamp : hash of all that a result depends on; the name of the folder that holds 
 Cases
 -----
 case : a folder of ``cases/``; ``case.yaml`` holds all numbers of a bed and its chains.
-preset : cells, lag and model of a chain by name (fast, balanced, accurate), chosen by the trade-off study.
+preset : settings of bed and chain by name (fast, balanced, accurate), chosen by the trade-off study.
 variant : a case with some keys changed, simulated in a folder of its own.
 archive : what figures need of a simulated bed, kept in ``cases/<case>/reference``.
 audit : dimensionless numbers that say which physics a scene needs.
