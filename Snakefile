@@ -16,6 +16,7 @@ from snakemake.cli import parse_args
 
 sys.path.insert(0, f"{workflow.basedir}/scripts")
 
+from bedchain.case.presets import simulated_case
 from bedchain.case.two_fluid import is_two_fluid
 from bedchain.command_line.failures import failure_report
 from bedchain.lifetime import begin_run, end_all_at_sigterm
@@ -27,7 +28,6 @@ from bedchain.workflow import (
     preset_name,
     quote_interpreter,
     reference_or_exit,
-    simulated_case,
     slurm_or_exit,
     targets_or_exit,
     time_limits_or_exit,

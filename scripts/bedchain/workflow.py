@@ -14,7 +14,7 @@ from bedchain.case.names import case_name_problem, is_name
 from bedchain.case.network_checks import NETWORK
 from bedchain.case.parameters import solver_parameters
 from bedchain.case.particle_free import particle_free
-from bedchain.case.presets import preset_named, read_presets, with_preset, with_preset_bed
+from bedchain.case.presets import preset_named, read_presets, with_preset
 from bedchain.case.scene_checks import used_keys
 from bedchain.case.schema import Case, load_schema
 from bedchain.case.two_fluid import is_two_fluid
@@ -186,24 +186,6 @@ def reference_or_exit(wanted: str | None, name: str, case: Case) -> Path | None:
             raise UserError(f"the case {name} has no archive, {folder}: leave the word out, {SIMULATE}")
         check_archive(folder, case, load_schema())
     return folder
-
-
-def simulated_case(case: Case, preset: str | None, reference: Path | None) -> Case:
-    """The case with the bed of its preset, where there is one and the bed is simulated; else the case itself.
-
-    Parameters
-    ----------
-    case : dict
-        Of `case_or_exit`, with the chains of the preset.
-    preset : str, optional
-        As of `case_or_exit`.
-    reference : Path, optional
-        Of `reference_or_exit`.
-    """
-    preset = preset or case.get("preset")
-    if not preset or reference or "frames" in case:
-        return case
-    return with_preset_bed(case, preset_named(preset))
 
 
 def network_figures(section: Case) -> list[str]:

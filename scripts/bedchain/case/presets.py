@@ -190,6 +190,24 @@ def with_preset_bed(case: Case, preset: Preset) -> Case:
     return case
 
 
+def simulated_case(case: Case, preset: str | None, reference: Path | None) -> Case:
+    """The case with the bed of its preset, where there is one and the bed is simulated; else the case itself.
+
+    Parameters
+    ----------
+    case : dict
+        A checked case, with the chains of the preset.
+    preset : str, optional
+        Its name; by default that of the case's key ``preset``, if any.
+    reference : Path, optional
+        The archive that the bed is taken from.
+    """
+    preset = preset or case.get("preset")
+    if not preset or reference or "frames" in case:
+        return case
+    return with_preset_bed(case, preset_named(preset))
+
+
 def _preset(file: Path, name: str, given: Any, lines: Lines) -> Preset:
     if not isinstance(given, dict):
         place = f"{file}, line {lines[name]}, {name}"

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Packing of spheres: height and voidage of a settled bed, thickness of a slab of one layer."""
+"""A bed at rest: its height and voidage, thickness of a slab of one layer, what friction on walls carries."""
 
 import math
 
@@ -69,3 +69,15 @@ def start_height(number: int, diameter: float, width: float, depth: float | None
     columns = math.floor(width / spacing)
     layers = 1 if depth is None else math.floor(depth / spacing)
     return math.ceil(number / (columns * layers)) * width / columns
+
+
+def wall_share(slimness: float) -> float:
+    """Share of a bed's weight that friction on its walls carries [1], by Janssen 1895.
+
+    Parameters
+    ----------
+    slimness : float
+        Wall friction times stress ratio times wall area over cross section,
+        ``2 mu K h / W`` for two walls [1].
+    """
+    return 1 + math.expm1(-slimness) / slimness if slimness > 0 else 0.0

@@ -13,6 +13,7 @@ import pandas as pd
 
 from bedchain.physics import scene_numbers as numbers
 from bedchain.physics.constants import GRAVITY_M_S2, PRESSURE_PA
+from bedchain.physics.packing import wall_share
 from bedchain.physics.scene_numbers import Scene
 
 CROWE = "Crowe, Schwarzkopf, Sommerfeld, Tsuji 2012, Multiphase Flows with Droplets and Particles"
@@ -268,18 +269,6 @@ def contact_radius(scene: Scene) -> float:
     load = (1 - scene.voidage) * scene.density * GRAVITY_M_S2 * scene.depth * scene.diameter**2
     modulus = GLASS_YOUNG_PA / (2 * (1 - GLASS_POISSON**2))
     return (3 * load * scene.diameter / 4 / (4 * modulus)) ** (1 / 3)
-
-
-def wall_share(slimness: float) -> float:
-    """Share of a bed's weight that friction on its walls carries [1], by Janssen 1895.
-
-    Parameters
-    ----------
-    slimness : float
-        Wall friction times stress ratio times wall area over cross section,
-        ``2 mu K h / W`` for two walls [1].
-    """
-    return 1 + math.expm1(-slimness) / slimness if slimness > 0 else 0.0
 
 
 def wall_criteria(scene: Scene) -> Iterator[Criterion]:

@@ -8,11 +8,18 @@ import yaml
 
 from bedchain.case.chosen import is_auto
 from bedchain.case.load import give_hint, load_case
-from bedchain.case.presets import Preset, preset_named, read_presets, with_preset, with_preset_bed
+from bedchain.case.presets import (
+    Preset,
+    preset_named,
+    read_presets,
+    simulated_case,
+    with_preset,
+    with_preset_bed,
+)
 from bedchain.dem.parameter_files import write_parameters
 from bedchain.dem.segments import read_parameters
 from bedchain.errors import CaseError, UserError
-from bedchain.workflow import case_or_exit, preset_name, simulated_case
+from bedchain.workflow import case_or_exit, preset_name
 from made import ROOT
 
 FAST = {"cell_m": 0.02, "lag_s": 0.2, "model": "static", "cost_s": 0.01, "error_floors": 2.5}

@@ -42,15 +42,6 @@ def test_history_force_of_a_particle_that_speeds_up_evenly(scene):
     assert rows["history force"] == pytest.approx(basset / stokes, rel=1e-6)
 
 
-def test_wall_share_of_janssen():
-    # the mean of exp(-j z) over the depth is what the floor carries
-    steps = 100_000
-    floor = sum(math.exp(-2.0 * (step + 0.5) / steps) for step in range(steps)) / steps
-    assert audit.wall_share(2.0) == pytest.approx(1 - floor, rel=1e-8)
-    assert audit.wall_share(0.0) == 0
-    assert audit.wall_share(1e-4) == pytest.approx(0.5e-4, rel=1e-3)
-
-
 @pytest.mark.parametrize("name", ["paper", "short", "mueller"])
 def test_the_shipped_beds_are_built_as_the_audit_says(name):
     rows = audit.audit(scene_of(load_case(ROOT / "cases" / name / "case.yaml")))
