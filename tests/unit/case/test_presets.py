@@ -163,7 +163,7 @@ def test_a_preset_may_leave_cells_and_lag_to_the_rule(short, tmp_path):
 
 
 def test_a_preset_changes_the_bed_as_far_as_the_case_allows(short, caplog):
-    bed = {"young_modulus_times": 0.1, "parcel_diameters": 2.0, "gas_step_times": 2.0}
+    bed = {"young_modulus_times": 0.1, "parcel_diameters": 2.0}
     stiff = copy.deepcopy(short)
     stiff["contact"]["young_modulus_Pa"] *= 100
     stiff["time"]["dem_step_s"] /= 10
@@ -171,12 +171,11 @@ def test_a_preset_changes_the_bed_as_far_as_the_case_allows(short, caplog):
     assert fast["contact"]["young_modulus_Pa"] == pytest.approx(stiff["contact"]["young_modulus_Pa"] / 10)
     # with its root, as near as the gas step divides
     assert 2.4 < fast["time"]["dem_step_s"] / stiff["time"]["dem_step_s"] <= 10**0.5
-    assert fast["time"]["gas_step_s"] == 2 * short["time"]["gas_step_s"] and not caplog.records
+    assert fast["gas"] == short["gas"] and not caplog.records
     assert fast["particles"]["parcel_diameters"] == 2 and short["particles"]["parcel_diameters"] == 1
     # particles that would be too soft, and parcels too wide for the gas cells, are left out by name
     same = with_preset_bed(short, Preset("fast", 0.02, 0.2, "static", bed=bed | {"parcel_diameters": 9.0}))
     assert same["contact"] == short["contact"] and same["particles"] == short["particles"]
-    assert same["time"]["gas_step_s"] == fast["time"]["gas_step_s"]
     assert [record.args[:2] for record in caplog.records] == [
         ("fast", "young_modulus_times"),
         ("fast", "parcel_diameters"),
@@ -185,7 +184,7 @@ def test_a_preset_changes_the_bed_as_far_as_the_case_allows(short, caplog):
 
 def test_a_bed_without_gas_takes_only_what_concerns_particles(caplog):
     drum = load_case(ROOT / "cases" / "drum" / "case.yaml")
-    bed = {"young_modulus_times": 0.1, "parcel_diameters": 2.0, "gas_step_times": 2.0}
+    bed = {"young_modulus_times": 0.1, "parcel_diameters": 2.0}
     softer = with_preset_bed(drum, Preset("fast", 0.02, 0.2, "static", bed=bed))
     assert softer["particles"] == drum["particles"] and not caplog.records
     assert softer["contact"]["young_modulus_Pa"] == pytest.approx(drum["contact"]["young_modulus_Pa"] / 10)
