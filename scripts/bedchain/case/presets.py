@@ -27,8 +27,8 @@ LOG = logging.getLogger(__name__)
 PRESETS = Path("cases/presets.yaml")
 MADE_BY = "snakemake tradeoff measures presets and writes results/<case>/presets.yaml"
 SETTINGS = ("cell_m", "lag_s", "model")
-# of the bed: Young's modulus over the case's, diameters of a parcel. Not the gas step: twice the case's is stable
-# on the short bed and not on the paper's.
+# of the bed: Young's modulus over the case's, diameters of a parcel. Not the gas step: twice the case's is
+# stable on the short bed, not on the paper's.
 BED_SETTINGS = ("young_modulus_times", "parcel_diameters")
 MEASURED = ("cost_s", "error_floors")
 OTHERS = ("density_floors", "measured_on")

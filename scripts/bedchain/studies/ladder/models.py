@@ -40,7 +40,11 @@ class Setting(NamedTuple):
 
 
 def timed(work: Callable[[], Result]) -> tuple[Result, float]:
-    """A result, and the processor time of one run [s]; short work is repeated."""
+    """A result, and the processor time of one run [s]; short work is repeated.
+
+    The first run is not timed: it loads and compiles what the others have at hand.
+    """
+    work()
     start, runs = time.process_time(), 0
     while True:
         result = work()

@@ -1,6 +1,8 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """What is written down about a bed: the two-phase model and plug flow."""
 
+import time
+
 import numpy as np
 import pytest
 
@@ -54,3 +56,15 @@ def test_wakes_say_axial_mixing_alone(case):
     curves = answer.values["mixing_axial"]
     assert curves.shape == (21, 2) and curves[0] == pytest.approx([1, 1])
     assert (curves[-1] < 0.9).all() and (curves > 0).all()
+
+
+def test_what_is_loaded_once_is_not_timed():
+    calls = []
+
+    def work():
+        calls.append(1)
+        until = time.process_time() + (0.4 if len(calls) == 1 else 0.001)
+        while time.process_time() < until:
+            pass
+
+    assert timed(work)[1] < 0.01
