@@ -245,7 +245,7 @@ def learning_window(realised: Realised) -> Row:
     """The columns of `error_columns` of the DEM's curves from the learning window, all pairs of starts.
 
     A bed whose flow lasts as long as the windows is not the same in both: its starts in one window are alike,
-    and their spread does not say what another one does. This row does; no chain learned there can know more.
+    and their spread does not say what another one does. This row does.
     """
     earlier, held = realised.earlier, realised.held.curves
     length = min(earlier.shape[1], held.shape[1])
