@@ -16,7 +16,9 @@ RANKS_GIVEN = "auto --cores {threads}" if CASE.get("run", {}).get("ranks") == "a
 REPEATS = range(1, CASE["comparison"]["repeats"] + 1)
 SOLVER = "results/bin/bedFoam"
 # the bed behind the results, simulated or from its archive: the case's, unless a preset simulates another
-OWN_BED = bool(PRESET) and solver_values(CASE) != solver_values(case_or_exit(NAME))
+OWN_BED = bool(PRESET) and solver_values(CASE) != solver_values(
+    simulated_case(case_or_exit(NAME), None, REFERENCE)
+)
 BED_FOLDER = FOLDER if OWN_BED else NAME
 BED = f"results/{BED_FOLDER}"
 RUN = {"dem": f"{BED}/dem.json", "bed_series": f"{BED}/bed_series.csv"}

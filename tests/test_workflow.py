@@ -148,6 +148,12 @@ def test_a_preset_simulates_its_own_bed_where_it_changes_it(empty, case, folder)
     assert {f"results/{folder}/dem.json", f"results/{case}-balanced/choice.csv"} <= set(dry_run.outputs)
 
 
+def test_a_preset_of_the_command_is_no_bed_of_the_case_s_own_preset(empty):
+    file = empty / "cases" / "short" / "case.yaml"
+    file.write_text(f"preset: fast\n{file.read_text()}")
+    assert "results/short-accurate/dem.json" in plan(empty, case="short", preset="accurate").outputs
+
+
 def test_the_bed_of_a_preset_stays_that_of_the_archive(with_archive):
     dry_run = plan(with_archive, case="paper", preset="fast")
     assert "unpack_reference" in dry_run.jobs and "run_dem" not in dry_run.jobs
