@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Cheaper or dearer settings of a case's bed, as changes by dotted key, and the case with such changes."""
+"""Cheaper or dearer settings of a case's bed, as changes by dotted key."""
 
 import math
 from collections.abc import Mapping
@@ -8,7 +8,7 @@ from typing import Any
 
 from bedchain.case.checks import physical_problems
 from bedchain.case.scene_checks import checked_keys
-from bedchain.case.schema import Case
+from bedchain.case.schema import Case, with_values
 from bedchain.errors import Problem
 from bedchain.physics.whole_numbers import dividing_step
 
@@ -48,17 +48,9 @@ def gas_cell(case: Case, factor: float) -> Changes:
     return {"gas.cell_size_m": float(width / (least * max(1, round(wanted / least))))}
 
 
-def changed(case: Case, changes: Mapping[str, Any]) -> Case:
-    """A case with other values of some keys of its sections; the given one is not changed."""
-    for key, value in changes.items():
-        section, _, name = key.partition(".")
-        case = case | {section: case[section] | {name: value}}
-    return case
-
-
 def problems_with(case: Case, changes: Mapping[str, Any]) -> list[Problem]:
     """What keeps a checked case from being simulated with some changes; empty where nothing does."""
-    return physical_problems(checked_keys(changed(case, changes)), set(), {})
+    return physical_problems(checked_keys(with_values(case, changes)), set(), {})
 
 
 def coupling_s(case: Case) -> float:

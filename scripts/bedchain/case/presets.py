@@ -17,7 +17,7 @@ from bedchain.case.checks import physical_problems
 from bedchain.case.chosen import AUTO
 from bedchain.case.names import NAME_RULE, is_name
 from bedchain.case.scene_checks import checked_keys
-from bedchain.case.schema import Case, load_schema
+from bedchain.case.schema import Case, load_schema, with_values
 from bedchain.case.strict_yaml import Lines, read_yaml
 from bedchain.errors import CaseError, UserError, guess
 from bedchain.physics.whole_numbers import ratio
@@ -185,7 +185,7 @@ def with_preset_bed(case: Case, preset: Preset) -> Case:
         if problems := bed_settings.problems_with(case, changes):
             LOG.warning("preset %s leaves out %s %g: %s", preset.name, setting, value, problems[0].wrong)
         else:
-            case = bed_settings.changed(case, changes)
+            case = with_values(case, changes)
     return case
 
 

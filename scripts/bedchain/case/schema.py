@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """The schema of a case, and the lookup of its keys and of a case's values."""
 
+from collections.abc import Mapping
 from functools import cache
 from pathlib import Path
 from typing import Any
@@ -30,6 +31,14 @@ def case_value(case: Case, key: str) -> Any:
             return None
         value = value[name]
     return value
+
+
+def with_values(case: Case, values: Mapping[str, Any]) -> Case:
+    """A case with other values of some dotted keys, whose sections are made where missing; a new dict."""
+    for key, value in values.items():
+        section, _, name = key.partition(".")
+        case = case | {section: case.get(section, {}) | {name: value} if name else value}
+    return case
 
 
 def schema_keys(schema: Schema, section: str = "") -> dict[str, Schema]:

@@ -9,7 +9,7 @@ from typing import Any
 import yaml
 
 from bedchain.case.load import load_case
-from bedchain.case.schema import Case
+from bedchain.case.schema import Case, with_values
 from bedchain.case.strict_yaml import read_yaml
 from bedchain.files import write_text
 
@@ -51,10 +51,7 @@ def write_variant(case_file: Path, variant: Variant, folder: Path) -> Case:
     CaseError
         The variant has problems, all listed.
     """
-    content = dict(read_yaml(case_file)[0])
-    for key, value in variant.changes.items():
-        section, _, name = key.partition(".")
-        content[section] = content.get(section, {}) | {name: value} if name else value
+    content = with_values(dict(read_yaml(case_file)[0]), variant.changes)
     folder.mkdir(parents=True, exist_ok=True)
     file = folder / "case.yaml"
     write_text(file, yaml.safe_dump(content, sort_keys=False))

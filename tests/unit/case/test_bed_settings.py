@@ -6,7 +6,6 @@ import copy
 import pytest
 
 from bedchain.case.bed_settings import (
-    changed,
     coupling_s,
     gas_cell,
     gas_step,
@@ -15,6 +14,7 @@ from bedchain.case.bed_settings import (
     stiffness,
 )
 from bedchain.case.load import load_case
+from bedchain.case.schema import with_values
 from bedchain.physics.whole_numbers import is_multiple
 from made import ROOT
 
@@ -33,14 +33,14 @@ def test_gas_cells_are_square_and_divide_the_bed(case, factor):
 
 @pytest.mark.parametrize("factor", [0.2, 0.5, 2.0])
 def test_steps_divide_each_other_and_the_frames(case, factor):
-    time = changed(case, gas_step(case, factor))["time"]
+    time = with_values(case, gas_step(case, factor))["time"]
     assert is_multiple(time["frame_interval_s"], time["gas_step_s"])
     assert is_multiple(time["gas_step_s"], time["dem_step_s"])
     assert time["gas_step_s"] <= factor * case["time"]["gas_step_s"] * (1 + 1e-9)
 
 
 def test_stiffer_particles_keep_their_share_of_the_rayleigh_time(case):
-    stiffer = changed(case, stiffness(case, 4.0))
+    stiffer = with_values(case, stiffness(case, 4.0))
     assert stiffer["contact"]["young_modulus_Pa"] == 4 * case["contact"]["young_modulus_Pa"]
     # at most half the step, and no more steps than divide the gas step
     assert 0.4 < stiffer["time"]["dem_step_s"] / case["time"]["dem_step_s"] <= 0.5 * (1 + 1e-9)
@@ -49,6 +49,6 @@ def test_stiffer_particles_keep_their_share_of_the_rayleigh_time(case):
 
 def test_what_cannot_be_simulated_is_named_and_the_case_stays_as_it_is(case):
     before = copy.deepcopy(case)
-    assert changed(case, parcels(2.0))["particles"]["parcel_diameters"] == 2.0 and case == before
+    assert with_values(case, parcels(2.0))["particles"]["parcel_diameters"] == 2.0 and case == before
     assert not problems_with(case, {})
     assert any("parcel" in problem.wrong for problem in problems_with(case, parcels(50.0)))
