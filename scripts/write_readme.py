@@ -19,7 +19,7 @@ from bedchain.errors import UserError
 from bedchain.files import atomic_file, write_csv, write_text
 from bedchain.stage import LOG, known_files, stage
 from bedchain.studies.readme import case_tables, study_tables
-from bedchain.studies.readme.marks import filled
+from bedchain.studies.readme.marks import filled, named_files
 from bedchain.studies.readme.origins import origin_now, origin_of_case, with_origin
 
 READMES = ("README.md", "*/README.md", "cases/*/README.md")
@@ -97,7 +97,7 @@ def write_readme(case: str | None, study: str | None, root: Path = Path()) -> No
                 copy_picture(root / figure, root / f".github/{name}.png")
     if study:
         table_of_study(study, root)
-    for readme in sorted(file for pattern in READMES for file in root.glob(pattern)):
+    for readme in readmes(root):
         text = readme.read_text(encoding="utf-8")
         if (new := filled(text, root)) != text:
             write_text(readme, new)
@@ -105,13 +105,20 @@ def write_readme(case: str | None, study: str | None, root: Path = Path()) -> No
 
 
 def tables_of_case(case: str, root: Path) -> None:
-    """Make the csv files of a case whose results are there; the others stay as they are."""
+    """Make the csv files that a README shows and whose results are there; the others stay as they are."""
     results = root / "results" / case
     origin = origin_of_case(results)
+    shown = {file for readme in readmes(root) for file in named_files(readme.read_text(encoding="utf-8"))}
     for name, (needed, build) in OF_CASE.items():
-        if all((results / file).exists() for file in needed):
-            write_csv(with_origin(build(results), origin), root / f"cases/{case}/tables/{name}.csv")
-            LOG.info("cases/%s/tables/%s.csv, commit %s", case, name, origin["commit"])
+        target = f"cases/{case}/tables/{name}.csv"
+        if target in shown and all((results / file).exists() for file in needed):
+            write_csv(with_origin(build(results), origin), root / target)
+            LOG.info("%s, commit %s", target, origin["commit"])
+
+
+def readmes(root: Path) -> list[Path]:
+    """The README files that hold measured tables."""
+    return sorted(file for pattern in READMES for file in root.glob(pattern))
 
 
 def table_of_study(study: str, root: Path) -> None:
@@ -140,7 +147,7 @@ def main() -> None:
     )
     parser.add_argument("--case", help="make its csv files from results/<case>")
     parser.add_argument("--study", help=f"make its csv file, of {', '.join(OF_STUDY)}")
-    parser.add_argument("--log", type=Path, default=Path("write_readme.log"), help="log file")
+    parser.add_argument("--log", type=Path, default=Path("logs/write_readme.log"), help="log file")
     given = parser.parse_args()
     results = Path("results") / (given.case or "none")
     with stage(given.log), known_files(sorted([*results.glob("*.csv"), *results.glob("*.json")]), []):

@@ -42,6 +42,14 @@ def test_results_become_a_csv_file_and_that_a_table(project: Path) -> None:
     assert "<sub>EPYC, 2 cores, commit 000000000000</sub>" in text
 
 
+def test_a_csv_file_that_no_text_shows_is_not_made(project: Path) -> None:
+    (project / "cases/paper/README.md").write_text(MARKED.replace("costs", "errors"))
+    (project / "cases/paper/tables").mkdir()
+    (project / "cases/paper/tables/errors.csv").write_text("error\n1\n")
+    write_readme("paper", None, project)
+    assert not (project / "cases/paper/tables/costs.csv").exists()
+
+
 def test_without_a_case_the_csv_file_decides(project: Path) -> None:
     write_readme("paper", None, project)
     file = project / "cases/paper/tables/costs.csv"

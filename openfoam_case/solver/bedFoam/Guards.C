@@ -91,7 +91,11 @@ void bedFoam::Guards::checkNumber(const Liggghts& dem)
                 )
             );
         }
-        stop(lost, "reduce time.dem_step_s, or raise bed.height_m where it left through the top");
+        stop(
+            lost,
+            "reduce time.dem_step_s, or time.gas_step_s where many are lost at once,"
+            " or raise bed.height_m where it left through the top"
+        );
     }
     seen_.resize(dem.count());
     for (int i = 0; i < dem.count(); ++i)
