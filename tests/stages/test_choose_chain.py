@@ -37,7 +37,8 @@ def test_the_table_gives_lag_and_cells_and_what_they_rest_on(walk):
     assert list(choice.columns) == ["quantity", "value", "unit", "why"]
     value = choice.set_index("quantity")["value"]
     assert value["lag_s"] / INTERVAL_S == pytest.approx(round(value["lag_s"] / INTERVAL_S))
-    assert 0.2 <= value["lag_low_s"] <= value["lag_high_s"] <= 0.6 and 0.25 <= value["lag_s"] <= 0.6
+    assert 0.2 <= value["lag_low_s"] <= value["lag_high_s"] <= 0.6
+    assert 0.25 <= value["lag_s"] <= 1.0  # a third of the window
     assert value["cell_m"] == pytest.approx(BOX_M / value["columns"]) and value["columns"] == value["rows"]
     assert max(value["added_x_1"], value["added_z_1"]) < 0.05
     assert value["correlation_x_s"] == pytest.approx(0.1, rel=0.3)

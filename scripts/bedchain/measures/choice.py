@@ -3,8 +3,8 @@
 
 The lag is the first one at which var(displacement) / (2 lag) has 95 % of its maximum on every axis: by then
 the velocity is forgotten, and a longer lag would only be coarser. Where walls end the rise sooner, the lag is
-raised until the memory that the place does not explain (`remaining_memory`) is below 5 %. The cells
-follow from it (`choice_of_cells`).
+raised until the memory that the place does not explain (`remaining_memory`) is below 2.6 %, which is what a
+motion without walls has left at its 95 %. The cells follow from it (`choice_of_cells`).
 """
 
 import math
@@ -21,10 +21,15 @@ Array = NDArray[np.float64]
 AXES = ("x", "z")
 
 REACHED = 0.95  # of the maximum: near its top the dispersion is flat and the place of the maximum uncertain
-MOST_MEMORY = 0.05  # correlation of successive displacements that the place does not explain
+# Correlation of successive displacements that the place does not explain: that of a motion without walls at
+# the lag where its dispersion has `REACHED` of its limit. A velocity that is forgotten within a lag L gives
+# displacements of the variance 2 D (L - c), where c = (1 - REACHED) L, and the covariance D c to two
+# successive ones.
+MOST_MEMORY = (1 - REACHED) / (2 * REACHED)
 FEWEST_PARTICLES = 10  # of fewer a variance is known to no digit
 FEWEST_CORRELATIONS = 3  # correlation times in a window: of fewer no maximum can be told from a fluctuation
-LONGEST = 0.2  # of the window: the lag where the dispersion has no maximum, and the longest it is raised to
+WITHOUT_MAXIMUM = 0.2  # of the window: the lag where the dispersion has no maximum
+LONGEST = 1 / 3  # of the window: the longest lag that another is raised to
 GIVE = "give chain.lag_s and cells, or a longer learning window"
 
 
@@ -107,7 +112,7 @@ def _judged(chosen: ChosenLag, curve: DispersionByLag, moving: NDArray[np.intp])
     longest, interval_s = int(curve.lags[-1]), curve.interval_s
     at_end = [AXES[axis] for axis in moving if chosen.maximum[axis] >= REACHED * longest]
     if at_end and chosen.frames > longest / 2:
-        frames = max(1, int(LONGEST * curve.window_s / interval_s))
+        frames = max(1, int(WITHOUT_MAXIMUM * curve.window_s / interval_s))
         doubt = (
             f"along {' and '.join(at_end)} the dispersion still rises at {longest * interval_s:g} s, half of "
             f"the window: it has no maximum, and the lag is a fifth of the window instead; {GIVE}"
@@ -145,8 +150,8 @@ def raised(chosen: ChosenLag, curve: DispersionByLag, places_m: Array) -> Chosen
     Returns
     -------
     ChosenLag
-        With the memory at its lag. Where none up to a fifth of the window has so little memory: the one with
-        the least, and a remark.
+        With the memory at its lag. Where none up to `LONGEST` of the window has so little memory: the one
+        with the least, and a remark.
     """
     longest = max(chosen.frames, int(LONGEST * curve.window_s / curve.interval_s))
     lags = [int(lag) for lag in curve.lags if chosen.frames <= lag <= longest] or [chosen.frames]
@@ -165,7 +170,7 @@ def raised(chosen: ChosenLag, curve: DispersionByLag, places_m: Array) -> Chosen
         return replace(chosen, memory=memory)
     remark = (
         f"raised from {chosen.frames * curve.interval_s:g} s, where walls end the rise of the dispersion "
-        f"before the motion is forgotten; {max(0.0, *memory):.0%} of memory remain"
+        f"before the motion is forgotten; {max(0.0, *memory):.1%} of memory remain"
     )
     return replace(chosen, frames=lags[place], memory=memory, remark=remark)
 
