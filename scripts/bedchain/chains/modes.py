@@ -31,8 +31,9 @@ EIGENVALUE_ERROR, RESIDUAL = 1e-10, 1e-6
 LEAST_HELD = 0.01
 # Eigenvalues asked for beyond those wanted, since some are dropped; at most so many times as many
 EXTRA, MOST = 3, 4
-# Steps by which a chain learned without a block smooths the modes of the whole chain
-SMOOTHING = 48
+# A chain learned without a block smooths the modes of the whole chain until this share of the fastest is left,
+# in so many steps at most: in more, processes of a few cells grow beside them, and at long lags only round-off stays
+LEFT_OF_FASTEST, MOST_SMOOTHING = 0.18, 48
 # Shares of the mass below this are round-off of the solver [1]
 ROUND_OFF = 1e-12
 
@@ -90,7 +91,7 @@ class Modes:
         """
         left = _real_basis(self.density, self.left, self.eigenvalues)[place]
         now = _real_basis(np.ones(len(self.density)), self.right, self.eigenvalues)[place]
-        for _ in range(SMOOTHING):
+        for _ in range(_smoothing_steps(self.eigenvalues)):
             now = matrix @ now
         values = dense.eigvals(left.T @ (matrix @ now), left.T @ now)
         values = np.delete(values, np.argmin(np.abs(values - 1)))
@@ -227,6 +228,12 @@ def _by_iteration(matrix: sparse.csr_array, n: int) -> tuple[Complex, Complex]:
 def _order(values: Complex) -> NDArray[np.int64]:
     """Order by falling size; of a pair that goes round, the one with the angle above 0 first."""
     return np.lexsort((-values.imag, -np.round(np.abs(values), 9)))
+
+
+def _smoothing_steps(eigenvalues: Complex) -> int:
+    """Steps until `LEFT_OF_FASTEST` of the fastest process is left, 1 to `MOST_SMOOTHING`."""
+    fastest = np.clip(np.abs(eigenvalues).min(initial=1), np.finfo(float).tiny, 1 - ROUND_OFF)
+    return int(np.clip(np.log(LEFT_OF_FASTEST) / np.log(fastest), 1, MOST_SMOOTHING))
 
 
 def _real_basis(stationary: NDArray[np.float64], vectors: Complex, values: Complex) -> NDArray[np.float64]:

@@ -100,3 +100,15 @@ def test_modes_again_are_those_of_the_changed_matrix():
 
 def test_a_single_state_has_no_process():
     assert slowest_modes(sparse.csr_array(np.eye(3)), 2).eigenvalues.size == 0
+
+
+def test_modes_again_at_a_long_lag():
+    # few steps leave nothing but round-off of the fifth process
+    walk, other = reflecting_walk(40, 0.3, 0.2), random_matrix(4, 40)
+    long, changed = (
+        sparse.csr_array(np.linalg.matrix_power(matrix.toarray(), 100))
+        for matrix in (walk, 0.999 * walk + 0.001 * other)
+    )
+    again = slowest_modes(long, 5).again(changed, np.arange(40))
+    exact = slowest_modes(changed, 5).eigenvalues
+    assert np.abs(again) == pytest.approx(np.abs(exact), rel=0.02)
