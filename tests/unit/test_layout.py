@@ -7,7 +7,7 @@ from made import ROOT
 
 MOST_ARGUMENTS = 8
 # compiled kernels: arrays and numbers one by one, since numba takes no dataclasses
-KERNELS = {"hash_counts._add_until_full", "jump._jump", "synthetic._advance"}
+KERNELS = {"jump._jump", "synthetic._advance"}
 
 
 def crowded(tree):

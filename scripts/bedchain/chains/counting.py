@@ -7,7 +7,8 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy import sparse
 
-from bedchain.chains import hash_counts, sorted_counts
+from bedchain.chains import sorted_counts
+from bedchain.chains.dense_counts import MOST_PAIRS, MoveTable
 from bedchain.errors import DataError
 from bedchain.trajectory.chunks import chunks
 
@@ -91,19 +92,20 @@ def count_moves(
     """
     starts, weights = step_starts(cells, lag, 1, first, last, step_weights)
     # one state more, for particles that are not there
-    n_states, table = n_cells + 1, hash_counts.empty_table()
-    occupied, gone = np.zeros(n_states, np.int64), np.zeros((2, n_cells), np.int64)
+    n_states, gone = n_cells + 1, np.zeros((2, n_cells), np.int64)
+    table = MoveTable(n_states) if n_states**2 <= MOST_PAIRS else sorted_counts.SortedMoves(n_states)
     for parts, chunk_weights in chunks(cells, n_cells, starts, weights, (0, lag)):
-        gone += lost_and_inserted(parts[0], parts[1], chunk_weights, n_cells)
-        before, after = _set_apart(parts, n_cells)
-        table = hash_counts.tally_moves(before, after, chunk_weights, occupied, table)
-    keys, values = hash_counts.table_entries(table)
-    rows, columns = np.divmod(keys, n_states)
+        seen = _set_apart(parts, n_cells)
+        if seen is not parts:
+            gone += lost_and_inserted(parts[0], parts[1], chunk_weights, n_cells)
+        table.add(seen[0], seen[1], chunk_weights)
+    rows, columns, values = table.entries()
     inside = (rows < n_cells) & (columns < n_cells)
     begins = np.concatenate(([0], np.cumsum(np.bincount(rows[inside], minlength=n_cells))))
     moves, shares = _csr(begins, columns[inside], values[inside], n_cells)
     lost, inserted = gone if gone.any() else (None, None)
-    return Counts(moves, shares, occupied[:n_cells], int(weights.sum()), lag, lost=lost, inserted=inserted)
+    occupied, steps = table.occupied[:n_cells], int(weights.sum())
+    return Counts(moves, shares, occupied, steps, lag, lost=lost, inserted=inserted)
 
 
 def count_pairs(

@@ -2,8 +2,8 @@
 """Transition counts of paths of cells by sorting, for counts in which most moves occur once or twice.
 
 A move is one number: its path of cells, its step, and the cell that it leads to, in fields of bits. Sorted,
-the moves of a path lie together, step by step, and one pass counts them: 0.1 to 0.3 us a move. A hash table
-(`hash_counts`) is as fast where few moves recur often, and takes 1.5 us where nearly each is another.
+the moves of a path lie together, step by step, and one pass counts them: 0.1 to 0.3 us a move. A table of all
+pairs of cells (`dense_counts`) is faster where it fits into memory.
 """
 
 from collections.abc import Sequence
@@ -17,6 +17,28 @@ from bedchain.errors import DataError
 KEY_BITS = 63
 Entries = tuple[NDArray[np.int64], NDArray[np.float64]]
 NO_ENTRIES: Entries = (np.zeros(0, np.int64), np.zeros((0, 3)))
+
+
+class SortedMoves:
+    """Moves between cells as in `dense_counts.MoveTable`, for any number of cells."""
+
+    def __init__(self, n_cells: int) -> None:
+        self.n_cells, self.bits, self._moves = n_cells, cell_bits(n_cells), NO_ENTRIES
+
+    def add(self, before: NDArray[np.int32], after: NDArray[np.int32], weights: NDArray[np.int64]) -> None:
+        """See `dense_counts.MoveTable.add`."""
+        self._moves = merged(self._moves, counted_paths((before, after), weights, self.bits))
+
+    def entries(self) -> tuple[NDArray[np.int64], NDArray[np.int64], NDArray[np.float64]]:
+        """See `dense_counts.MoveTable.entries`."""
+        keys, values = self._moves
+        return keys >> self.bits, keys & (1 << self.bits) - 1, values[:, :2]
+
+    @property
+    def occupied(self) -> NDArray[np.int64]:
+        """Steps in which each cell held a particle, (n_cells,) [1]."""
+        keys, values = self._moves
+        return np.bincount(keys >> self.bits, values[:, 2], self.n_cells).astype(np.int64)
 
 
 def cell_bits(n_states: int) -> int:
