@@ -31,7 +31,7 @@ EIGENVALUE_ERROR, RESIDUAL = 1e-10, 1e-6
 LEAST_HELD = 0.01
 # Eigenvalues asked for beyond those wanted, since some are dropped; at most so many times as many
 EXTRA, MOST = 3, 4
-# A chain learned without a block smooths the modes of the whole chain until this share of the fastest is left,
+# A chain learned without a block smooths the modes of the whole one until this share of the fastest is left,
 # in so many steps at most: in more, processes of a few cells grow, and at long lags only round-off stays
 LEFT_OF_FASTEST, MOST_SMOOTHING = 0.18, 48
 # Shares of the mass below this are round-off of the solver [1]
