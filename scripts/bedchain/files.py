@@ -8,14 +8,16 @@ import time
 from collections.abc import Iterator
 from contextlib import contextmanager, suppress
 from pathlib import Path
-from typing import IO, Any
+from typing import IO, TYPE_CHECKING, Any
 
 import numpy as np
-import pandas as pd
 from numpy.typing import NDArray
 
 from bedchain.errors import DataError, UserError, world_error
 from bedchain.work_folders import OURS, fresh_folder
+
+if TYPE_CHECKING:  # pandas takes a third of a second to load, and stages of arrays alone need none
+    import pandas as pd
 
 
 def write_arrays(path: Path | str, arrays: dict[str, NDArray[Any]]) -> None:
@@ -151,7 +153,7 @@ def write_npy_header(stream: IO[bytes], shape: tuple[int, ...], dtype: np.dtype)
     np.lib.format.write_array_header_1_0(stream, header)
 
 
-def write_csv(table: pd.DataFrame, target: Path) -> None:
+def write_csv(table: "pd.DataFrame", target: Path) -> None:
     """Write a table as csv, complete or not at all.
 
     Parameters

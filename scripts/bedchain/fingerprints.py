@@ -14,7 +14,6 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
-import pandas as pd
 
 from bedchain.errors import DataError, UserError
 from bedchain.files import refuse_special_file, write_text
@@ -142,6 +141,8 @@ def _read(file: Path) -> None:
     elif file.suffix == ".csv":
         if not file.read_bytes().endswith(b"\n"):
             raise ValueError("it is cut off: its last line has no end")
+        import pandas as pd  # late: it takes a third of a second to load, in each stage
+
         pd.read_csv(file, comment="#")
     elif file.suffix == ".npy":
         np.load(file, mmap_mode="r")
