@@ -152,32 +152,31 @@ def count_starts(frames: Frames, chain: MarkovChain, sides: Sides, edges: NDArra
     lag, history, base = chain.lag, chain.history, chain.n_symbols
     n_starts, span = len(frames.times_s) - lag, (history - 1) * lag
     before, frame_symbols = span + chain.back, chain.symbols(frames)
-    keys = np.zeros((n_starts - before, frame_symbols.shape[1]), np.int64)
-    for ago in range(span, -1, -lag):
-        keys = keys * base + frame_symbols[span - ago : n_starts - chain.back - ago]
+    whole = np.int32 if base**history <= np.iinfo(np.int32).max else np.int64
+    keys = np.zeros((n_starts - before, frame_symbols.shape[1]), whole)
+    for row, now in enumerate(keys):  # frame by frame, which a core's cache holds
+        for ago in range(span, -1, -lag):
+            now *= base
+            now += frame_symbols[span - ago + row]
     pasts, ranks = ranked(keys, base**history)
-    # left or right, and low or up: four quarters, of which each group has two
-    quarter = 2 * sides.marked[before:n_starts, 0].astype(np.int8) + sides.marked[before:n_starts, 2]
-    place = 4 * ranks.astype(np.int64) + quarter
+    marked, held = sides.marked[before:n_starts], np.empty((4, len(edges) - 1, pasts.size), np.int64)
     ends = np.maximum(np.asarray(edges) - before, 0)
-    held = np.stack(
-        [
-            np.bincount(place[first:last].ravel(), minlength=4 * pasts.size).reshape(-1, 4).T
-            for first, last in zip(ends[:-1], ends[1:], strict=True)
-        ],
-        axis=1,
-    )
+    for block, (first, last) in enumerate(zip(ends[:-1], ends[1:], strict=True)):
+        # left or right, and low or up: four quarters, of which each group has two
+        place = 4 * ranks[first:last].astype(np.int64)
+        place += 2 * marked[first:last, 0].astype(np.int8) + marked[first:last, 2]
+        held[:, block] = np.bincount(place.ravel(), minlength=4 * pasts.size).reshape(-1, 4).T
     number = np.stack([held[2] + held[3], held[0] + held[1], held[1] + held[3], held[0] + held[2]])
     symbols = np.array([pasts // base**ago % base for ago in range(history)][::-1], np.int32)
     return Starts(symbols, number)
 
 
-def ranked(keys: NDArray[np.int64], n_keys: int) -> tuple[NDArray[np.int64], NDArray[np.integer]]:
+def ranked(keys: NDArray[np.integer], n_keys: int) -> tuple[NDArray[np.int64], NDArray[np.integer]]:
     """Distinct keys, rising, and the rank of each key among them.
 
     Parameters
     ----------
-    keys : (...) int64 array
+    keys : (...) int array
         From 0 to ``n_keys - 1``.
     n_keys : int
         Possible keys; up to `LISTED_KEYS` ranks come from a list of all of them, above from sorting.
