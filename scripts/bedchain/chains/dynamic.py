@@ -123,7 +123,8 @@ def _on_states(
     """
     columns, fell_back = np.empty(both.nnz, np.int32), np.empty(both.nnz, bool)
     begins = np.searchsorted(keys, np.arange(n_cells + 1) * n_cells)
-    _find_states(both.indptr, both.indices, cell_of_state, keys, begins, columns, fell_back)
+    by_cell = np.argsort(cell_of_state, kind="stable")
+    _find_states(both.indptr, both.indices, cell_of_state, by_cell, keys, begins, columns, fell_back)
     lengths = np.diff(both.indptr)
     data = both.data / np.repeat(np.asarray(both.sum(axis=1)).ravel(), lengths)
     shape = (both.shape[0], both.shape[0])
@@ -132,22 +133,26 @@ def _on_states(
 
 
 @njit(cache=True)
-def _find_states(indptr, indices, cell_of_state, keys, begins, columns, fell_back):  # type: ignore[no-untyped-def]
-    """State of each entry, and whether it falls back; ``begins`` are the first pairs from each cell."""
-    n_cells = begins.size - 1
-    for row in range(cell_of_state.size):
+def _find_states(indptr, indices, cell_of_state, by_cell, keys, begins, columns, fell_back):  # type: ignore[no-untyped-def]
+    """State of each entry, and whether it falls back.
+
+    ``by_cell`` are the rows by their cell, ``begins`` the first pairs from each cell.
+    """
+    n_cells, last = begins.size - 1, -1
+    state_of = np.full(n_cells, -1, np.int64)  # of each next cell from the last cell
+    for row in by_cell:
         cell = cell_of_state[row]
+        if cell != last:
+            if last >= 0:
+                for pair in range(begins[last], begins[last + 1]):
+                    state_of[keys[pair] - last * n_cells] = -1
+            for pair in range(begins[cell], begins[cell + 1]):
+                state_of[keys[pair] - np.int64(cell) * n_cells] = pair
+            last = np.int64(cell)
         for entry in range(indptr[row], indptr[row + 1]):
-            pair = np.int64(cell) * n_cells + indices[entry]
-            low, high = begins[cell], begins[cell + 1]
-            while low < high:
-                middle = (low + high) >> 1
-                if keys[middle] < pair:
-                    low = middle + 1
-                else:
-                    high = middle
-            fell_back[entry] = low == begins[cell + 1] or keys[low] != pair
-            columns[entry] = keys.size + indices[entry] if fell_back[entry] else low
+            state = state_of[indices[entry]]
+            fell_back[entry] = state < 0
+            columns[entry] = keys.size + indices[entry] if state < 0 else state
 
 
 def _open_pairs(

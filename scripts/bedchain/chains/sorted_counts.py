@@ -114,7 +114,8 @@ def _of_sorted(keys, weights, step_bits, bits):  # type: ignore[no-untyped-def]
     """Entries of sorted moves (path, step, cell)."""
     cell_of, step_of = (np.int64(1) << bits) - 1, (np.int64(1) << step_bits) - 1
     count, share, touched = np.zeros(cell_of + 1), np.zeros(cell_of + 1), np.empty(cell_of + 1, np.int64)
-    entry_keys, values = np.empty(keys.size, np.int64), np.zeros((keys.size, 3))
+    # far fewer entries than moves: zeros would touch all of it
+    entry_keys, values = np.empty(keys.size, np.int64), np.empty((keys.size, 3))
     begin, n_entries = 0, 0
     while begin < keys.size:
         path, occupied, n_touched = keys[begin] >> (bits + step_bits), 0.0, 0
@@ -133,10 +134,10 @@ def _of_sorted(keys, weights, step_bits, bits):  # type: ignore[no-untyped-def]
                 share[cell] += weight / (end - begin)
             begin = end
         touched[:n_touched].sort()
-        values[n_entries, 2] = occupied
         for cell in touched[:n_touched]:
             entry_keys[n_entries] = (path << bits) | cell
             values[n_entries, 0], values[n_entries, 1] = count[cell], share[cell]
+            values[n_entries, 2], occupied = occupied, 0.0
             count[cell], share[cell] = 0.0, 0.0
             n_entries += 1
     return entry_keys[:n_entries].copy(), values[:n_entries].copy()
