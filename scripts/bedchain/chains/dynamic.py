@@ -138,7 +138,7 @@ def _find_states(indptr, indices, cell_of_state, by_cell, keys, begins, columns,
 
     ``by_cell`` are the rows by their cell, ``begins`` the first pairs from each cell.
     """
-    n_cells, last = begins.size - 1, -1
+    n_cells, last = begins.size - 1, np.int64(-1)
     state_of = np.full(n_cells, -1, np.int64)  # of each next cell from the last cell
     for row in by_cell:
         cell = cell_of_state[row]
