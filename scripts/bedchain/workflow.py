@@ -18,7 +18,6 @@ from bedchain.case.presets import preset_named, read_presets, with_preset
 from bedchain.case.scene_checks import used_keys
 from bedchain.case.schema import Case, load_schema
 from bedchain.case.two_fluid import is_two_fluid
-from bedchain.chains.networks.page import chains_of, starts_and_exits
 from bedchain.command_line.cluster import check_slurm, check_time_limit
 from bedchain.command_line.peers import peers_options
 from bedchain.command_line.targets import check_options, check_targets
@@ -144,6 +143,8 @@ def case_or_exit(name: str, preset: str | None = None) -> Case:
         if NETWORK in case:
             if preset:
                 raise UserError(f"{file} is a network, whose chains are written down: leave preset= out")
+            from bedchain.chains.networks.page import chains_of  # late: numba and scipy take a second to load
+
             chains_of(case[NETWORK], str(file))
         if preset and is_two_fluid(case):
             raise UserError(
@@ -190,6 +191,8 @@ def reference_or_exit(wanted: str | None, name: str, case: Case) -> Path | None:
 
 def network_figures(section: Case) -> list[str]:
     """Figures of a case that is a network, by what its page has."""
+    from bedchain.chains.networks.page import starts_and_exits  # late, as above
+
     opened, placed = starts_and_exits(section, CASES)
     return [
         "fig_states",

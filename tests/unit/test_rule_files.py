@@ -1,9 +1,12 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Files behind a script and other inputs of rules."""
 
+import ast
+from pathlib import Path
+
 import pytest
 
-from bedchain.rule_files import code, dated, imported_files, runs_code, source_files
+from bedchain.rule_files import code, dated, imported_files, module_files, runs_code, source_files
 from made import ROOT
 
 LIBRARY = {
@@ -28,15 +31,17 @@ def behind(tmp_path, monkeypatch):
         (tmp_path / "scripts/bedchain" / name).write_text(text)
     monkeypatch.chdir(tmp_path)
 
+    def forget():
+        for cached in (imported_files, module_files, runs_code):
+            cached.cache_clear()
+
     def files(text):
         (tmp_path / "scripts/draw.py").write_text(text)
-        imported_files.cache_clear()
-        runs_code.cache_clear()
+        forget()
         return {file.removeprefix("scripts/bedchain/") for file in code("draw")}
 
     yield files
-    imported_files.cache_clear()
-    runs_code.cache_clear()
+    forget()
 
 
 @pytest.mark.parametrize(
@@ -52,11 +57,33 @@ def behind(tmp_path, monkeypatch):
         ("from bedchain.physics.contacts import stiffness\n", {"physics/contacts.py"}),
         ("def draw():\n    if draw:\n        import bedchain.errors\n", {"errors.py"}),
         ("from bedchain.files import atomic_file\n", {"files.py", "errors.py"}),
+        ("from bedchain import (  # two\n    errors,\n    files,\n)\n", {"errors.py", "files.py"}),
+        ("from bedchain import errors, \\\n    files\n", {"errors.py", "files.py"}),
+        ("import json as j, bedchain.errors\n", {"errors.py"}),
+        ('"""Prose:\nfrom bedchain on, import of bedchain.\n"""\n', set()),
     ],
     ids=lambda value: value if isinstance(value, str) else "",
 )
 def test_every_form_of_import_is_followed(behind, text, files):
     assert behind(text) == files
+
+
+def by_whole_files(file):
+    """Names that a file imports of the library, by parsing all of it."""
+    for node in ast.walk(ast.parse(file.read_text(encoding="utf-8"))):
+        if isinstance(node, ast.Import):
+            yield from (alias.name for alias in node.names)
+        elif isinstance(node, ast.ImportFrom) and node.module:
+            yield from (node.module, *(f"{node.module}.{alias.name}" for alias in node.names))
+
+
+def test_no_import_of_the_scripts_is_missed(monkeypatch):
+    monkeypatch.chdir(ROOT)
+    files = sorted(Path("scripts").rglob("*.py"))
+    assert len(files) > 200
+    for file in files:
+        library = [name for name in by_whole_files(file) if name.split(".")[0] == "bedchain"]
+        assert imported_files(file) == {source for name in library for source in module_files(name)}, file
 
 
 def test_a_package_counts_where_it_holds_more_than_a_docstring(behind):

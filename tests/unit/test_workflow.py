@@ -1,6 +1,9 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Keys of a case as rules of the Snakefile take them."""
 
+import subprocess
+import sys
+
 import pytest
 
 from bedchain.case.load import load_case
@@ -23,3 +26,13 @@ def test_table_values_are_of_sections_in_use_and_models_built():
     values = table_values(case)
     assert values["bed.width_m"] == case["bed"]["width_m"] and "title" not in values
     assert not any(key.startswith(("figures.", "drum.", "chain.jump.")) for key in values)
+
+
+def test_snakemake_starts_without_the_packages_that_compute():
+    """They take more than a second of every start, also of ``--dry-run``."""
+    line = (
+        "import sys, bedchain.workflow; print(sorted({'numba', 'scipy', 'matplotlib'} & sys.modules.keys()))"
+    )
+    program = [sys.executable, "-c", line]
+    ended = subprocess.run(program, cwd=ROOT / "scripts", capture_output=True, text=True, check=True)
+    assert ended.stdout == "[]\n"

@@ -6,8 +6,6 @@ from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
-from scipy.integrate import cumulative_trapezoid, quad
-from scipy.optimize import brentq
 
 from bedchain.physics import scene_numbers as numbers
 from bedchain.physics import two_phase
@@ -69,6 +67,8 @@ class BubblingBed:
 
     def share_below(self, line: float) -> float:
         """Share of the particles below a height [1]; the height in [m]."""
+        from scipy.integrate import cumulative_trapezoid  # late: scipy.integrate takes half a second to load
+
         content = cumulative_trapezoid(1 - self.bubble_share, self.height, initial=0)
         return float(np.interp(line, self.height, content) / self.minimum_height)
 
@@ -125,6 +125,8 @@ def surface(share: Callable[[float], float], packed: float) -> float:
     RegimeError
         Turbulent: the bed expands without end.
     """
+    from scipy.integrate import quad  # late, as above
+    from scipy.optimize import brentq
 
     def missing(height: float) -> float:
         return quad(lambda place: 1 - share(place), 0, height)[0] - packed

@@ -4,8 +4,6 @@
 import math
 from dataclasses import dataclass
 
-from scipy.optimize import brentq
-
 from bedchain.physics import fluidization
 from bedchain.physics.constants import ADIABATIC_INDEX, GRAVITY_M_S2, PRESSURE_PA
 from bedchain.physics.contacts import contact_modulus
@@ -118,6 +116,8 @@ def single_drag(scene: Scene, velocity: float) -> float:
 
 def terminal_velocity(scene: Scene) -> float:
     """Velocity at which one sphere falls through still gas [m/s]."""
+    from scipy.optimize import brentq  # late: scipy.optimize takes half a second to load
+
     return float(
         brentq(lambda speed: single_drag(scene, speed) - scene.weight, *VELOCITY_RANGE_M_S, rtol=1e-12)
     )

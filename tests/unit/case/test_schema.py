@@ -3,7 +3,13 @@
 
 import re
 
+from jsonschema import Draft202012Validator
+
 from bedchain.case.schema import load_schema, schema_keys
+
+
+def test_the_schema_is_one():
+    Draft202012Validator.check_schema(load_schema())
 
 
 def test_every_key_of_the_schema_says_meaning_unit_and_source():
