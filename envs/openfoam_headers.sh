@@ -1,7 +1,8 @@
 #!/bin/sh
 # SPDX-License-Identifier: GPL-3.0-or-later
-# openfoam_headers.sh WORK TARGET: puts OpenFOAM's headers, flat, into TARGET/include/<library>. Debian ships the libraries
-# without them: they come from the Debian source package of the installed version. WORK holds what is needed meanwhile.
+# openfoam_headers.sh WORK TARGET: puts OpenFOAM's headers, flat, into TARGET/include/<library>, unless those of the installed
+# version are there. Debian ships the libraries without them: they come from its source package. WORK holds what is needed
+# meanwhile.
 set -eu
 cd -- "$(dirname -- "$(readlink -f -- "$0")")/.."
 . envs/common.sh
@@ -37,13 +38,18 @@ unpack() {
         --transform 's,^[^/]*/src/,,;s,^\([^/]*\)/.*/,\1/,' "$@"
 }
 
+headers() {
+    need_space "$work" "$ROOM_MB" "OpenFOAM's headers"
+    rm -rf "${work:?}/lists" "$work/package" "$work/sources" "$work/include"
+    clear_ours "$target"
+    download
+    check_source_package "$work/package"
+    unpack
+    mv "$work/include" "$target/include"
+    rm -rf "$work/lists" "$work/package" "$work/sources"
+}
+
 mkdir -p "$1"
 work=$(cd "$1" && pwd) target=$2
-need_space "$work" "$ROOM_MB" "OpenFOAM's headers"
-rm -rf "${work:?}/lists" "$work/package" "$work/sources" "$work/include"
-clear_ours "$target"
-download
-check_source_package "$work/package"
-unpack
-mv "$work/include" "$target/include"
-rm -rf "$work/lists" "$work/package" "$work/sources"
+step "$target" "$(digest envs/openfoam_headers.sh) $(dpkg-query -W -f '${Version}' libopenfoam)" \
+    "fetching OpenFOAM's headers into $target (45 MB to download)" headers
