@@ -61,7 +61,9 @@ def _sorted(particles, side, shape):  # type: ignore[no-untyped-def]
 def _gaps(first, shape):  # type: ignore[no-untyped-def]
     """Rings between each bucket and the nearest bucket with a particle; 0 for buckets with particles."""
     columns, rows = shape
-    gaps = np.where(np.diff(first) > 0, 0, columns + rows).reshape(rows, columns)
+    gaps = np.empty((rows, columns), np.int64)
+    for b in range(rows * columns):  # a loop: numba's np.diff takes five seconds to compile
+        gaps[b // columns, b % columns] = 0 if first[b + 1] > first[b] else columns + rows
     # Two sweeps, from the bottom left and from the top right, each over four of the eight neighbours.
     for turn in (1, -1):
         for i in range(rows):

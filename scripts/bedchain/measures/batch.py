@@ -5,6 +5,7 @@ from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
+from scipy import special
 
 from bedchain.errors import UserError
 from bedchain.trajectory.cell_store import CellStore, frame_at
@@ -127,11 +128,13 @@ def expected_total_variation(shares: NDArray[np.float64], number: int) -> float:
     float
         0 to 1 [1].
     """
-    from scipy.stats import binom  # late: scipy.stats takes a second to load
-
     chance = shares[shares > 0] / shares.sum()
-    deviation = 2 * chance * (1 - chance) * binom.pmf(np.floor(number * chance), number - 1, chance)
-    return float(0.5 * deviation.sum())
+    chance = chance[chance < 1]  # the only cell gets all of them
+    drawn, others = np.floor(number * chance), number - 1 - np.floor(number * chance)
+    # by logarithms of the factorials: scipy.stats takes a second to load
+    ways = special.gammaln(number) - special.gammaln(drawn + 1) - special.gammaln(others + 1)
+    probability = np.exp(ways + special.xlogy(drawn, chance) + special.xlog1py(others, -chance))
+    return float((chance * (1 - chance) * probability).sum())
 
 
 def total_variation(p: NDArray[np.float64], q: NDArray[np.float64]) -> float:

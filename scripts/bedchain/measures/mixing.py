@@ -4,7 +4,6 @@
 from typing import Any, NamedTuple
 
 import numpy as np
-from numba import njit
 from numpy.typing import NDArray
 
 from bedchain.errors import DataError
@@ -139,19 +138,8 @@ def remaining_from_cells(
     """
     remaining = np.empty((len(cells), 4))
     for frame in range(len(cells)):
-        remaining[frame] = _mean_of(marked, _on_side(np.asarray(cells[frame]), marked, shares))
+        remaining[frame] = _mean_of(marked, (marked * shares[:, cells[frame]]).sum(axis=1))
     return remaining
-
-
-@njit(cache=True)
-def _on_side(cells, marked, shares):  # type: ignore[no-untyped-def]
-    """Sum over the particles of each group of the share of their cell that is on the group's side."""
-    total = np.zeros(marked.shape[0])
-    for group in range(marked.shape[0]):
-        for particle in range(cells.size):
-            if marked[group, particle]:
-                total[group] += shares[group, cells[particle]]
-    return total
 
 
 def _mean_of(marked: NDArray[np.bool_], total: NDArray[np.generic]) -> NDArray[np.float64]:

@@ -53,7 +53,9 @@ def resampled(run: NDArray[np.integer], replicates: int, rng: np.random.Generato
     weights = np.zeros((replicates, run.size))
     for row in weights:
         for drawn in rng.integers(0, len(members), len(members)):
-            np.add.at(row, rng.choice(members[drawn], members[drawn].size), 1.0)
+            curves = members[drawn]
+            again = curves[rng.integers(0, curves.size, curves.size)]
+            row += np.bincount(again, minlength=run.size)
     return weights
 
 

@@ -49,6 +49,7 @@ def test_total_variation_by_hand():
 def test_expected_total_variation_is_the_mean_of_draws():
     # one coin of two: 0 or 1 heads, both 1/2 off
     assert expected_total_variation(np.array([0.5, 0.5, 0.0]), 1) == pytest.approx(0.5)
+    assert expected_total_variation(np.array([2.0, 0.0]), 7) == 0
     shares, number = np.array([0.5, 0.3, 0.199, 0.001]), 40
     drawn = np.random.default_rng(1).multinomial(number, shares, 4000) / number
     distances = 0.5 * np.abs(drawn - shares).sum(axis=1)
