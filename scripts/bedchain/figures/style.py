@@ -101,7 +101,8 @@ def save_figure(figure: Figure, png: Path, pdf: Path, resolution_dpi: int) -> No
     resolution_dpi : int
         Of the png, and of images in the pdf [dots per inch].
     """
-    figure.draw_without_rendering()
+    if layout := figure.get_layout_engine():
+        layout.execute(figure)
     # the layout was just worked out, for both forms: with any engine, also "none", each is drawn twice
     with matplotlib.rc_context({"figure.constrained_layout.use": False}):
         figure.set_layout_engine(None)
