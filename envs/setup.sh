@@ -59,7 +59,9 @@ sh envs/debian_packages.sh .setup/apt.log $(sed 's/#.*//' envs/apt.txt)
 setsid sh envs/openfoam_headers.sh .setup/openfoam .openfoam >.setup/headers.log 2>&1 & # its own group: it ends as one
 headers=$!
 trap 'kill -s TERM -- "-$headers" 2>/dev/null || true' EXIT
+trap 'exit 129' HUP
 trap 'exit 130' INT
+trap 'exit 143' TERM
 
 checks=${1:+-r envs/requirements-checks.txt}
 step .venv "$(digest envs/requirements.txt) $("$PYTHON" -V) $(pwd -P)" \
