@@ -356,9 +356,10 @@ def test_nothing_goes_on_after_the_python_packages_failed(set_up, tmp_path: Path
     wait_until(lambda: not processes_in(tmp_path))
 
 
-def test_ctrl_c_ends_all_of_the_set_up(set_up, tmp_path: Path) -> None:
+@pytest.mark.parametrize("end", [signal.SIGINT, signal.SIGTERM])
+def test_a_signal_ends_all_of_the_set_up(set_up, tmp_path: Path, end: signal.Signals) -> None:
     process = set_up(WORKING)
     wait_until((tmp_path / "at_work").exists)
-    os.killpg(process.pid, signal.SIGINT)
-    assert process.wait(timeout=30) == 130
+    os.killpg(process.pid, end)
+    assert process.wait(timeout=30) == 128 + end
     wait_until(lambda: not processes_in(tmp_path))
