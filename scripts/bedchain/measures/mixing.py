@@ -136,9 +136,15 @@ def remaining_from_cells(
     (n_frames, 4) array
         Shares [1]; less than 1 in the first frame where a line divides cells.
     """
-    remaining = np.empty((len(cells), 4))
+    n_groups, n_cells = shares.shape
+    # particles of the same groups are counted together: which groups those are is one number of as many bits
+    alike = 2 ** np.arange(n_groups) @ marked
+    of_alike = np.arange(2**n_groups) >> np.arange(n_groups)[:, None] & 1
+    remaining = np.empty((len(cells), n_groups))
     for frame in range(len(cells)):
-        remaining[frame] = _mean_of(marked, (marked * shares[:, cells[frame]]).sum(axis=1))
+        counts = np.bincount(alike * n_cells + cells[frame], minlength=2**n_groups * n_cells)
+        held = of_alike @ counts.reshape(-1, n_cells)
+        remaining[frame] = _mean_of(marked, (held * shares).sum(axis=1))
     return remaining
 
 
