@@ -147,9 +147,7 @@ def case_or_exit(name: str, preset: str | None = None) -> Case:
 
             chains_of(case[NETWORK], str(file))
         if preset and is_two_fluid(case):
-            raise UserError(
-                f"{file} is a bed of two fluids, from which no chain is learned: leave preset= out"
-            )
+            raise UserError(f"{file} is two fluids, from which no chain is learned: leave preset= out")
         return with_preset(case, preset_named(preset)) if preset else case
 
 
