@@ -25,9 +25,10 @@ from bedchain.trajectory.grid import Grid
 from bedchain.trajectory.realisations import open_bed
 from bedchain.trajectory.store import BedFiles, read_manifest
 
-# a median of many repeats where they are short, of a few where one takes seconds
+# a median of many runs where they are short, of three where one takes a second; a run that compiles moves no
+# median
 REPEATS = 15
-ENOUGH_S = 5.0
+ENOUGH_S = 1.0
 FEWEST = 3
 
 
@@ -154,7 +155,7 @@ def running_rows(
 
 
 def measured(name: str, kernel: Callable[[], Any], work: float, work_unit: str) -> Row:
-    """Medians of repeated runs of a kernel, after one run that compiles what it needs.
+    """Medians of repeated runs of a kernel.
 
     Parameters
     ----------
@@ -171,7 +172,6 @@ def measured(name: str, kernel: Callable[[], Any], work: float, work_unit: str) 
     dict
         One row of timing.csv; the peak is that of the whole process while the kernel ran.
     """
-    kernel()
     if not forget_peak():
         LOG.info("the peak of the memory use cannot be reset here: it is that of the process so far")
     wall: list[float] = []
