@@ -40,6 +40,7 @@ from bedchain.comparison.mode_maps import mode_maps, mode_rows
 from bedchain.files import write_csv
 from bedchain.measures.batch import total_variation
 from bedchain.measures.mixing import Splits, marked_histogram, sides
+from bedchain.meter import keep_freed_memory
 from bedchain.stage import LOG, run_stage
 from bedchain.trajectory.frames import Frames, Window, lag_frames
 from bedchain.trajectory.grid import OUTSIDE, Grid
@@ -84,6 +85,7 @@ def diagnose_chains(
     settings : ModelSettings
         Options by model.
     """
+    keep_freed_memory()
     run = open_bed(bed)
     chains = {chain.name: chain for chain in map(registry.load, transitions)}
     with_matrix = {name: chain for name, chain in chains.items() if isinstance(chain, MarkovChain)}

@@ -19,6 +19,7 @@ from bedchain.comparison.curves import curve_errors, curves_of
 from bedchain.files import write_csv
 from bedchain.measures.mixing import GROUPS, Splits
 from bedchain.measures.numerical_dispersion import spreading
+from bedchain.meter import keep_freed_memory
 from bedchain.stage import run_stage
 from bedchain.studies.scan import scan
 from bedchain.trajectory.frames import Frames, Lag, Window, lag_frames
@@ -72,6 +73,7 @@ def discuss_errors(
     case : CaseChains
     scanned : Scanned
     """
+    keep_freed_memory()
     run = open_bed(bed)
     learned, compared = (part.frames(run.times_s) for part in (learning, comparison))
     size, own_lag = (run.width_m, run.height_m), lag_frames(case.lag_s, run.interval_s)

@@ -34,3 +34,22 @@ def test_processor_time_is_that_of_the_child_and_of_its_own():
     before_s = children_cpu_s()
     subprocess.run(["sh", "-c", f'"{sys.executable}" -S -c "{busy}"; sleep 0.2'], check=True)
     assert 0.29 < children_cpu_s() - before_s < 0.6
+
+
+def test_freed_memory_is_kept_where_asked():
+    code = "\n".join(
+        (
+            "import resource, numpy as np, sys",
+            "from bedchain.meter import keep_freed_memory",
+            "keep_freed_memory() if sys.argv[1:] else None",
+            "np.ones(1_000_000)",
+            "before = resource.getrusage(resource.RUSAGE_SELF).ru_minflt",
+            "for _ in range(20): np.ones(1_000_000)",
+            "print(resource.getrusage(resource.RUSAGE_SELF).ru_minflt - before)",
+        )
+    )
+    faults = [
+        int(subprocess.run([sys.executable, "-c", code, *words], cwd="scripts", capture_output=True).stdout)
+        for words in ([], ["kept"])
+    ]
+    assert faults[1] < 100 < faults[0]

@@ -4,6 +4,7 @@
 from dataclasses import dataclass
 
 import numpy as np
+from numba import njit
 from numpy.typing import NDArray
 
 from bedchain.errors import DataError
@@ -66,15 +67,14 @@ def dispersion_by_height(
         )
     n_layers = len(edges_m) - 1
     moments = np.zeros((BLOCKS, 3, 2, n_layers + 2))  # number, sum and sum of squares
-    n_starts = len(x_m) - lag.frames
+    edges, n_starts = np.asarray(edges_m, np.float64), len(x_m) - lag.frames
     for frame in range(n_starts):
-        layer = layer_of(np.asarray(z_m[frame], np.float64), edges_m)
+        layer = layer_of(np.ascontiguousarray(z_m[frame], np.float64), edges)
         of_block = moments[frame * BLOCKS // n_starts]
-        of_block[0] += np.bincount(layer, minlength=n_layers + 2)
         for axis, position in enumerate((x_m, z_m)):
-            step = np.subtract(position[frame + lag.frames], position[frame], dtype=np.float64)
-            of_block[1, axis] += np.bincount(layer, step, n_layers + 2)
-            of_block[2, axis] += np.bincount(layer, step**2, n_layers + 2)
+            ends = position[frame], position[frame + lag.frames]
+            now, later = (np.ascontiguousarray(end, np.float64) for end in ends)
+            of_block[:, axis] += _moments(layer, now, later, n_layers)
     whole = moments.sum(axis=0)
     mean_m, variance_m2 = _mean_and_variance(whole)
     left_out_m2 = np.stack([_mean_and_variance(whole - of_block)[1] for of_block in moments])
@@ -91,14 +91,27 @@ def _mean_and_variance(moments: NDArray[np.float64]) -> tuple[NDArray[np.float64
     return mean.T, np.maximum(square / counts - mean**2, 0.0).T
 
 
-def layer_of(z_m: NDArray[np.float64], edges_m: NDArray[np.float64]) -> NDArray[np.int64]:
-    """Number of the layer of each position, as ``np.digitize`` gives it, five times as fast for equal layers.
+@njit(cache=True)
+def _moments(layer, now, later, n_layers):  # type: ignore[no-untyped-def]
+    """Number, sum and sum of squares of the displacements of each layer, (3, n_layers + 2)."""
+    moments = np.zeros((3, n_layers + 2))
+    for particle in range(layer.size):
+        place, step = layer[particle], later[particle] - now[particle]
+        moments[0, place] += 1
+        moments[1, place] += step
+        moments[2, place] += step**2
+    return moments
+
+
+@njit(cache=True)
+def layer_of(z_m, edges_m):  # type: ignore[no-untyped-def]
+    """Number of the layer of each position, as ``np.digitize`` gives it, in a fraction of its time.
 
     Parameters
     ----------
-    z_m : (n_particles,) array
+    z_m : (n_particles,) float64 array
         [m].
-    edges_m : (n_layers + 1,) array
+    edges_m : (n_layers + 1,) float64 array
         Bounds of layers of about one height, ascending [m].
 
     Returns
@@ -106,11 +119,20 @@ def layer_of(z_m: NDArray[np.float64], edges_m: NDArray[np.float64]) -> NDArray[
     (n_particles,) int64 array
         0 below the first bound, n_layers + 1 from the last one on.
     """
-    n_layers = len(edges_m) - 1
-    bounds = np.concatenate(([-np.inf], edges_m, [np.inf]))
-    layer = ((z_m - edges_m[0]) * (n_layers / (edges_m[-1] - edges_m[0])) + 1).astype(np.int64)
-    np.clip(layer, 0, n_layers + 1, out=layer)
-    # the division is right but for round-off at a bound; layers of other heights take more rounds
-    while (wrong := (z_m < bounds[layer]).astype(np.int64) - (z_m >= bounds[layer + 1])).any():
-        layer -= wrong
-    return layer
+    layers = np.empty(z_m.size, np.int64)
+    n_layers = edges_m.size - 1
+    per_m = n_layers / (edges_m[-1] - edges_m[0])
+    for particle in range(z_m.size):
+        z = z_m[particle]
+        layer = 0
+        if z >= edges_m[-1]:
+            layer = n_layers + 1
+        elif z >= edges_m[0]:
+            layer = min(np.int64((z - edges_m[0]) * per_m) + 1, n_layers)
+            # the division is right but for round-off at a bound; layers of other heights take more steps
+            while z < edges_m[layer - 1]:
+                layer -= 1
+            while z >= edges_m[layer]:
+                layer += 1
+        layers[particle] = layer
+    return layers
