@@ -9,10 +9,13 @@ import logging
 import sys
 from pathlib import Path
 
+from snakemake.script import PythonScript
+
 sys.path.insert(0, f"{workflow.basedir}/scripts")
 
 from bedchain.case.presets import simulated_case
 from bedchain.case.two_fluid import is_two_fluid
+from bedchain.figure_scripts import share_process
 from bedchain.lifetime import begin_run
 from bedchain.rule_files import code, source_files
 from bedchain.workflow import (
@@ -32,6 +35,7 @@ TYPED = workflow.is_main_process and "snakemake" in Path(sys.argv[0]).parts[-2:]
 if TYPED or workflow.remote_exec:  # its jobs end with it, however it ends
     begin_run(submitted=workflow.remote_exec)
 if TYPED:
+    share_process(PythonScript)
     options_or_exit(sys.argv[1:], workflow.resource_settings.cores, workflow.resource_settings.nodes)
 
 # threads of a rule that must be alone on its machine: all of this one; on a cluster its job takes a whole node

@@ -1,0 +1,103 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Scripts of figures are copies of one process; they fail, and end with a killed run, as others do."""
+
+import os
+import signal
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+
+from bedchain.lifetime import RUN
+from made import ROOT
+from made.processes import wait_until
+
+PATIENCE_S = 120.0
+SNAKEFILE = """
+import sys
+sys.path.insert(0, {scripts!r})
+from snakemake.script import PythonScript
+from bedchain import figure_scripts
+from bedchain.lifetime import begin_run
+if workflow.is_main_process:
+    del figure_scripts.LOADED[1:]
+    begin_run()
+    figure_scripts.share_process(PythonScript)
+    figure_scripts.share_process(PythonScript)
+rule all:
+    input: "a.txt", "b.txt", "other.txt"
+rule a:
+    output: "a.txt"
+    script: "plot_a.py"
+rule b:
+    output: "b.txt"
+    script: "plot_b.py"
+rule other:
+    output: "other.txt"
+    script: "other.py"
+rule wrong:
+    output: "wrong.txt"
+    script: "plot_wrong.py"
+rule long:
+    output: "long.txt"
+    script: "plot_long.py"
+"""
+WRITE = """
+import os, sys
+from pathlib import Path
+loaded = [name for name in sys.modules if name.startswith("bedchain.")]
+Path(snakemake.output[0]).write_text(f"{os.getppid()} {len(sys.argv)} {loaded}")
+"""
+LONG = """
+import os, time
+from pathlib import Path
+from bedchain.lifetime import end_with_run
+end_with_run()
+Path("process.txt").write_text(str(os.getpid()))
+time.sleep(600)
+"""
+LIBRARY = "['bedchain.figure_scripts']"
+
+
+@pytest.fixture
+def folder(tmp_path):
+    scripts = {"plot_a": WRITE, "plot_b": WRITE, "other": WRITE, "plot_long": LONG}
+    scripts["plot_wrong"] = "raise ValueError('no such colour')"
+    for name, text in scripts.items():
+        (tmp_path / f"{name}.py").write_text(text)
+    (tmp_path / "Snakefile").write_text(SNAKEFILE.format(scripts=str(ROOT / "scripts")))
+    return tmp_path
+
+
+def start(folder, target):
+    command = [sys.executable, "-m", "snakemake", "--cores", "2", target]
+    environment = {name: value for name, value in os.environ.items() if name != RUN}
+    pipes = {"stdout": subprocess.PIPE, "stderr": subprocess.STDOUT, "text": True}
+    return subprocess.Popen(command, cwd=folder, env=environment, start_new_session=True, **pipes)
+
+
+def test_figures_share_a_process_and_others_do_not(folder):
+    run = start(folder, "all")
+    assert "Traceback" not in run.communicate(timeout=PATIENCE_S)[0] and run.returncode == 0
+    a, b, other = ((folder / f"{name}.txt").read_text().split(maxsplit=1) for name in ("a", "b", "other"))
+    assert a == b and a[0] != other[0]
+    assert a[1] == f"1 {LIBRARY}" and other[1] == "1 []"
+
+
+def test_an_error_is_shown_and_fails_the_run(folder):
+    run = start(folder, "wrong.txt")
+    output = run.communicate(timeout=PATIENCE_S)[0]
+    assert run.returncode == 1
+    assert "ValueError: no such colour" in output and "Error in rule wrong" in output
+
+
+def test_no_copy_outlives_a_killed_run(folder):
+    run = start(folder, "long.txt")
+    where = folder / "process.txt"
+    wait_until(lambda: where.exists() and where.read_text(), PATIENCE_S)
+    copy = Path(f"/proc/{where.read_text()}")
+    assert copy.exists()
+    os.kill(run.pid, signal.SIGKILL)
+    run.communicate(timeout=PATIENCE_S)  # all that held its output have ended, the server too
+    wait_until(lambda: not copy.exists())
