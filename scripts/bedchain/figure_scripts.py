@@ -8,6 +8,7 @@ files as they are.
 
 import multiprocessing
 import runpy
+import shlex
 import subprocess
 import sys
 from pathlib import Path
@@ -35,6 +36,7 @@ def share_process(script_class: Any, prefix: str = "plot_") -> None:
         return
     context = multiprocessing.get_context("forkserver")
     context.set_forkserver_preload(LOADED)
+    context.set_executable(shlex.split(sys.executable)[0])  # as `workflow.quote_interpreter` left it
 
     def execute_script(job: Any, file: str, edit: bool = False) -> None:
         other_python = job.conda_env or job.container_img or job.env_modules

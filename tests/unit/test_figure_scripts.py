@@ -2,6 +2,7 @@
 """Scripts of figures are copies of one process; they fail, and end with a killed run, as others do."""
 
 import os
+import shlex
 import signal
 import subprocess
 import sys
@@ -23,6 +24,7 @@ from bedchain.lifetime import begin_run
 if workflow.is_main_process:
     del figure_scripts.LOADED[1:]
     begin_run()
+    sys.executable = {python!r}
     figure_scripts.share_process(PythonScript)
     figure_scripts.share_process(PythonScript)
 rule all:
@@ -66,7 +68,9 @@ def folder(tmp_path):
     scripts["plot_wrong"] = "raise ValueError('no such colour')"
     for name, text in scripts.items():
         (tmp_path / f"{name}.py").write_text(text)
-    (tmp_path / "Snakefile").write_text(SNAKEFILE.format(scripts=str(ROOT / "scripts")))
+    (tmp_path / "my venv").symlink_to(sys.prefix)
+    python = shlex.quote(str(tmp_path / "my venv/bin" / Path(sys.executable).name))
+    (tmp_path / "Snakefile").write_text(SNAKEFILE.format(scripts=str(ROOT / "scripts"), python=python))
     return tmp_path
 
 
