@@ -8,12 +8,13 @@ set -eu
 # Sources that are compiled as one, a line each: OpenFOAM's templates take most of the time and are made anew for each line.
 # ParticleForces and ParticleDrag stand alone: beside others the compiler rounds their sums otherwise, which gives another
 # realisation of each bed. LIGGGHTS's headers do not go together with OpenFOAM's.
-together='bedFoam UEqn pEqn fields
+together='bedFoam UEqn pEqn fields Reconstruction
 DemCoupling BedSeries Deposit Guards Inlet RunReport bedState slabs
 ParticleForces
 ParticleDrag
 Liggghts
-SlabGrid
+SlabGrid BandFactor
+BandPreconditioner
 dragLaws'
 
 output=${1:?usage: sh openfoam_case/solver/build.sh OUTPUT}

@@ -49,6 +49,7 @@ void runSegment(const argList& args)
     pisoControl piso(mesh);
     const bedFoam::Inlet inlet(mesh, properties);
     bedFoam::GasFields gas(mesh);
+    const bedFoam::Reconstruction reconstruct(mesh);
     bedFoam::SolidsFields solids(mesh);
 
     bedFoam::DemCoupling particles(mesh, parameters, properties, segment);
@@ -73,7 +74,9 @@ void runSegment(const argList& args)
         inlet.setVelocity(solids.voidage, gas.U, gas.phi);
         const surfaceScalarField voidagef("voidagef", fvc::interpolate(solids.voidage));
         const tmp<fvVectorMatrix> UEqn = bedFoam::solveMomentum(solids, voidagef, viscosity, piso, gas);
-        while (piso.correct()) bedFoam::solvePressure(UEqn(), solids, voidagef, guards, piso, gas);
+        const bedFoam::PressureCorrector pressure(UEqn(), solids, voidagef, reconstruct, gas);
+        while (piso.correct()) pressure.correct(guards, piso, gas);
+        pressure.setGradient(gas);
         report.charge(bedFoam::RunReport::gas);
 
         particles.applyForces(gas, solids);

@@ -11,62 +11,83 @@
 #include "constrainPressure.H"
 #include "fvCFD.H"
 
+#include "BandPreconditioner.H"
 #include "gasEquations.H"
 
 namespace
 {
 
-//- Flux of H/A: by the faces' momentum inside and between ranks, by HbyA on the other patches
-surfaceScalarField fluxWithoutPressure(
-    const fvVectorMatrix& UEqn, const volVectorField& HbyA, const surfaceScalarField& rAUf,
-    const volScalarField& voidage
-)
+// Cells in a row up to which the band is factorized: that work grows with their square, multigrid's does not
+constexpr label widestBand = 100;
+
+//- The pressure's entry in fvSolution
+const dictionary& pressureSolver(const volScalarField& p, bool last)
 {
-    surfaceScalarField phiHbyA("phiHbyA", fvc::flux(HbyA));
-    const surfaceScalarField momentum = rAUf * fvc::flux(UEqn.H() / voidage);
-    phiHbyA.primitiveFieldRef() = momentum.primitiveField();
+    const label width = returnReduce(bedFoam::bandWidth(p.mesh().lduAddr()), maxOp<label>());
+    return p.mesh().solver(word(width > widestBand ? "pWide" : "p") + (last ? "Final" : ""));
+}
+
+}
+
+bedFoam::PressureCorrector::PressureCorrector(
+    const fvVectorMatrix& UEqn, const SolidsFields& solids, const surfaceScalarField& voidagef,
+    const Reconstruction& reconstruct, const GasFields& gas
+)
+    : UEqn_(UEqn),
+      solids_(solids),
+      voidagef_(voidagef),
+      reconstruct_(reconstruct),
+      A_("A", UEqn.A()),
+      rAU_("rAU", 1 / A_),
+      rAUfree_("rAUfree", 1 / (A_ - solids.dragRate)),
+      rAUf_("rAUf", 1 / fvc::interpolate(A_ / solids.voidage)),
+      rateOfFlux_("rateOfFlux", rAUf_ * fvc::ddtCorr(gas.U, gas.phi))
+{}
+
+surfaceScalarField bedFoam::PressureCorrector::fluxWithoutPressure(
+    const volVectorField& H, const volVectorField& HbyA
+) const
+{
+    surfaceScalarField phiHbyA("phiHbyA", rAUf_ * fvc::flux(H / solids_.voidage));
     forAll(phiHbyA.boundaryField(), patch)
     {
-        if (!HbyA.mesh().boundary()[patch].coupled()) continue;
-        phiHbyA.boundaryFieldRef()[patch] = momentum.boundaryField()[patch];
+        const fvPatch& faces = HbyA.mesh().boundary()[patch];
+        if (faces.coupled()) continue;
+        phiHbyA.boundaryFieldRef()[patch] = faces.Sf() & HbyA.boundaryField()[patch];
     }
     return phiHbyA;
 }
 
-}
-
-void bedFoam::solvePressure(
-    const fvVectorMatrix& UEqn, const SolidsFields& solids, const surfaceScalarField& voidagef,
-    const Guards& guards, pisoControl& piso, GasFields& gas
-)
+void bedFoam::PressureCorrector::correct(const Guards& guards, pisoControl& piso, GasFields& gas) const
 {
-    const volScalarField& voidage = solids.voidage;
+    const volScalarField& voidage = solids_.voidage;
     volScalarField& p = gas.p;
     volVectorField& U = gas.U;
 
-    const volScalarField rAU("rAU", 1 / UEqn.A());
-    const volScalarField rAUfree("rAUfree", 1 / (UEqn.A() - solids.dragRate));
-    const surfaceScalarField rAUf("rAUf", 1 / fvc::interpolate(UEqn.A() / voidage));
+    const volVectorField H(UEqn_.H());
+    const volVectorField HbyA = constrainHbyA(rAU_ * H, U, p);
+    const volVectorField HbyAfree = constrainHbyA(rAUfree_ * (H - solids_.dragSource), U, p);
 
-    const volVectorField HbyA = constrainHbyA(rAU * UEqn.H(), U, p);
-    const volVectorField HbyAfree = constrainHbyA(rAUfree * (UEqn.H() - solids.dragSource), U, p);
-
-    surfaceScalarField phiHbyA = fluxWithoutPressure(UEqn, HbyA, rAUf, voidage);
-    phiHbyA += rAUf * fvc::ddtCorr(U, gas.phi);
-    constrainPressure(p, U, phiHbyA, rAUf);
+    surfaceScalarField phiHbyA = fluxWithoutPressure(H, HbyA);
+    phiHbyA += rateOfFlux_;
+    constrainPressure(p, U, phiHbyA, rAUf_);
 
     while (piso.correctNonOrthogonal())
     {
         fvScalarMatrix pEqn(
-            fvm::laplacian(voidagef * rAUf, p) == fvc::ddt(voidage) + fvc::div(voidagef * phiHbyA)
+            fvm::laplacian(voidagef_ * rAUf_, p) == fvc::ddt(voidage) + fvc::div(voidagef_ * phiHbyA)
         );
-        guards.checkPressure(pEqn.solve(p.mesh().solver(p.select(piso.finalInnerIter()))), pEqn);
-        if (piso.finalNonOrthogonalIter()) gas.phi = phiHbyA - pEqn.flux() / voidagef;
+        guards.checkPressure(pEqn.solve(pressureSolver(p, piso.finalInnerIter())), pEqn);
+        if (piso.finalNonOrthogonalIter()) gas.phi = phiHbyA - pEqn.flux() / voidagef_;
     }
 
-    U = fvc::reconstruct(gas.phi) + (rAU / rAUfree) * (HbyAfree - fvc::reconstruct(fvc::flux(HbyAfree)));
+    U = reconstruct_(gas.phi) + (rAU_ / rAUfree_) * (HbyAfree - reconstruct_(fvc::flux(HbyAfree)));
     U.correctBoundaryConditions();
-    gas.gradP = (UEqn.H() - UEqn.A() * U) / voidage;
+}
+
+void bedFoam::PressureCorrector::setGradient(GasFields& gas) const
+{
+    gas.gradP = (UEqn_.H() - A_ * gas.U) / solids_.voidage;
 }
 
 scalar bedFoam::volumeImbalance(
