@@ -185,7 +185,7 @@ BAD_VALUES = [
     ("bed", "widht_m", "0.1", "did you mean width_m?"),
     ("particles", "diameter_m", "-1.0e-3", "at least 1e-06"),
     ("bed", "width_m", "5.0e-4", "narrower than a particle"),
-    ("time", "dem_step_s", "1.0e-4", "Rayleigh"),
+    ("time", "dem_step_s", "2.0e-4", "Rayleigh"),
     ("time", "frame_interval_s", "0.02501", "multiple of time.dem_step_s"),
     ("learning", "end_s", "50.0", "outside the simulated time"),
 ]

@@ -89,8 +89,8 @@ def oscillator_step(scene: Scene, number: int) -> float:
 
 
 def dem_step_limit(scene: Scene, step: float) -> Limit:
-    """Limit of the particles' step: the usual share of the Rayleigh time."""
-    formula = "0.2 pi r sqrt(rho/G) / (0.1631 nu + 0.8766)"
+    """Limit of the particles' step, a share of the Rayleigh time."""
+    formula = f"{RAYLEIGH_SHARE_MAX:g} pi r sqrt(rho/G) / (0.1631 nu + 0.8766)"
     return Limit("DEM step [s]", RAYLEIGH_SHARE_MAX * rayleigh(scene), formula, step)
 
 

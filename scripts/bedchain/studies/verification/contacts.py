@@ -6,7 +6,10 @@ from typing import Any
 
 import numpy as np
 
+from bedchain.case.bed_checks import RAYLEIGH_SHARE_MAX
 from bedchain.dem.small_cases import Setup, run_particles
+from bedchain.physics.contacts import rayleigh_time
+from bedchain.physics.whole_numbers import rounded_down
 from bedchain.studies.verification.laws import GRAVITY
 from bedchain.studies.verification.plots import Curve, draw
 from bedchain.studies.verification.rows import Row
@@ -26,6 +29,10 @@ LAWS = ("hertz", "hooke")
 SQUEEZE = 4e-4  # [s]: until two spheres have met and parted
 FINE_FRAME = 4e-6  # [s], a fiftieth of an impact
 ROLLING_FRICTION = 0.1
+# impacts resolved by few steps: particles as soft as a bed of two cores carries
+LONG_STEP, LONG_STEPS, SOFT, PAIRS = RAYLEIGH_SHARE_MAX, 50, 1.9e5, 15
+SPEEDS = (0.05, 0.2, 0.5)  # [m/s], of either sphere
+SCATTER = 0.04
 LATE = 0.7  # share of `SLIDE` after which the sphere rolls, resisted or not
 
 
@@ -70,6 +77,41 @@ def check_impact(work: Path, figures: Path) -> list[Row]:
     given = np.array(RESTITUTIONS)
     curve = Curve("head-on impact", given, np.array(ratios), given)
     draw(figures / "impact", [curve], "restitution given [1]", "restitution recovered [1]")
+    return rows
+
+
+def long_step_restitutions(folder: Path, speed: float, restitution: float) -> np.ndarray:
+    """Restitution of head-on impacts [1] that differ in how far a step reaches into the contact, (n_pairs,).
+
+    The step is the largest that a case may have, `LONG_STEP` of the Rayleigh time.
+    """
+    step = float(rounded_down(LONG_STEP * rayleigh_time(SOFT, POISSON, DENSITY, SPHERE / 2)))
+    sections = case_sections(LONG_STEPS * step, restitution_1=restitution, young_modulus_Pa=SOFT)
+    sections["time"] |= {"dem_step_s": step, "gas_step_s": step}
+    gaps = 1.01 * SPHERE + 2 * speed * step * np.arange(PAIRS) / PAIRS
+    heights = 1.2 * SPHERE * (1 + np.arange(PAIRS))
+    left = [[0.008, height, speed, 0, SPHERE] for height in heights]
+    right = [[0.008 + gap, height, -speed, 0, SPHERE] for gap, height in zip(gaps, heights, strict=True)]
+    frames = run_particles(
+        Setup(folder, sections, np.array(left + right), {"gravity": 0.0}), LONG_STEPS * step
+    )
+    parting = frames[-1, PAIRS:, 3] - frames[-1, :PAIRS, 3]
+    return parting / (2 * speed)
+
+
+def check_long_step(work: Path) -> list[Row]:
+    """Rows of impacts by the longest step that a case may have: their mean, and the one farthest from it."""
+    rows, given = [], 0.9
+    for speed in SPEEDS:
+        ratios = long_step_restitutions(work / f"long_step_{speed:g}", speed, given)
+        quantity = (
+            f"of {PAIRS} impacts at {2 * speed:g} m/s by steps of {100 * LONG_STEP:g} % of the Rayleigh time"
+        )
+        source = "definition, as above; the phase of the step in the contact varies"
+        error = float(ratios.std(ddof=1) / np.sqrt(PAIRS))
+        rows.append(Row(f"restitution {quantity}, mean [1]", ratios.mean(), given, NEAR, source, error))
+        farthest = float(np.abs(ratios - given).max())
+        rows.append(Row(f"restitution {quantity}, largest difference [1]", farthest, 0, SCATTER, source))
     return rows
 
 
@@ -150,4 +192,9 @@ def check_rolling(work: Path, figures: Path) -> list[Row]:
 
 def check(work: Path, solver: Path, figures: Path) -> list[Row]:
     """Rows and figures of all contacts; they need no gas."""
-    return check_impact(work, figures) + check_overlap(work) + check_rolling(work, figures)
+    return (
+        check_impact(work, figures)
+        + check_long_step(work)
+        + check_overlap(work)
+        + check_rolling(work, figures)
+    )
