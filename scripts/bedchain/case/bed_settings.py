@@ -28,6 +28,11 @@ def stiffness(case: Case, factor: float) -> Changes:
     return {"contact.young_modulus_Pa": young, "time.dem_step_s": shorter}
 
 
+def dem_step(case: Case, factor: float) -> Changes:
+    """The particles' step times a factor, or the next shorter one that divides gas step or frame interval."""
+    return {"time.dem_step_s": dividing_step(coupling_s(case), case["time"]["dem_step_s"] * factor)}
+
+
 def parcels(size: float) -> Changes:
     """Parcels of so many diameters."""
     return {"particles.parcel_diameters": size}

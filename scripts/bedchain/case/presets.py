@@ -27,9 +27,9 @@ LOG = logging.getLogger(__name__)
 PRESETS = Path("cases/presets.yaml")
 MADE_BY = "snakemake tradeoff measures presets and writes results/<case>/presets.yaml"
 SETTINGS = ("cell_m", "lag_s", "model")
-# of the bed: Young's modulus over the case's, diameters of a parcel. Not the gas step: twice the case's is
-# stable on the short bed, not on the paper's.
-BED_SETTINGS = ("young_modulus_times", "parcel_diameters")
+# of the bed: Young's modulus and then the particles' step over the case's, diameters of a parcel. Not the gas
+# step: twice the case's is stable on the short bed, not on the paper's.
+BED_SETTINGS = ("young_modulus_times", "dem_step_times", "parcel_diameters")
 MEASURED = ("cost_s", "error_floors")
 OTHERS = ("density_floors", "measured_on")
 FEWEST_CELLS = 4  # along each side of a bed: of fewer, half a bed is a single cell
@@ -178,6 +178,8 @@ def with_preset_bed(case: Case, preset: Preset) -> Case:
     for setting, value in preset.bed.items():
         if setting == "young_modulus_times":
             changes = bed_settings.stiffness(case, value)
+        elif setting == "dem_step_times":
+            changes = bed_settings.dem_step(case, value)
         elif case["gas"]["model"] != "none":
             changes = bed_settings.parcels(value)
         else:

@@ -7,6 +7,7 @@ import pytest
 
 from bedchain.case.bed_settings import (
     coupling_s,
+    dem_step,
     gas_cell,
     gas_step,
     parcels,
@@ -45,6 +46,14 @@ def test_stiffer_particles_keep_their_share_of_the_rayleigh_time(case):
     # at most half the step, and no more steps than divide the gas step
     assert 0.4 < stiffer["time"]["dem_step_s"] / case["time"]["dem_step_s"] <= 0.5 * (1 + 1e-9)
     assert is_multiple(coupling_s(case), stiffer["time"]["dem_step_s"])
+
+
+@pytest.mark.parametrize("factor", [0.4, 1.6])
+def test_the_step_alone_changes_and_divides_the_gas_step(case, factor):
+    changed = with_values(case, dem_step(case, factor))
+    step_s = changed["time"]["dem_step_s"]
+    assert 0.8 * factor < step_s / case["time"]["dem_step_s"] <= factor * (1 + 1e-9)
+    assert is_multiple(coupling_s(case), step_s) and changed["contact"] == case["contact"]
 
 
 def test_what_cannot_be_simulated_is_named_and_the_case_stays_as_it_is(case):

@@ -174,12 +174,21 @@ def test_a_preset_changes_the_bed_as_far_as_the_case_allows(short, caplog):
     assert fast["gas"] == short["gas"] and not caplog.records
     assert fast["particles"]["parcel_diameters"] == 2 and short["particles"]["parcel_diameters"] == 1
     # particles that would be too soft, and parcels too wide for the gas cells, are left out by name
-    same = with_preset_bed(short, Preset("fast", 0.02, 0.2, "static", bed=bed | {"parcel_diameters": 9.0}))
-    assert same["contact"] == short["contact"] and same["particles"] == short["particles"]
+    too_far = {"young_modulus_times": 0.1, "dem_step_times": 4.0, "parcel_diameters": 9.0}
+    same = with_preset_bed(short, Preset("fast", 0.02, 0.2, "static", bed=too_far))
+    assert all(same[section] == short[section] for section in ("contact", "time", "particles"))
     assert [record.args[:2] for record in caplog.records] == [
         ("fast", "young_modulus_times"),
+        ("fast", "dem_step_times"),
         ("fast", "parcel_diameters"),
     ]
+
+
+def test_a_preset_lengthens_the_step_after_it_softened_the_particles(paper):
+    preset = Preset("balanced", 0.02, 0.2, "static", bed={"young_modulus_times": 1.0, "dem_step_times": 1.6})
+    longer = with_preset_bed(paper, preset)
+    assert longer["time"]["dem_step_s"] == pytest.approx(1.6 * paper["time"]["dem_step_s"])
+    assert longer["contact"] == paper["contact"]
 
 
 def test_a_bed_without_gas_takes_only_what_concerns_particles(caplog):

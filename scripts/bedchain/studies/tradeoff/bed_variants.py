@@ -7,11 +7,11 @@ from dataclasses import dataclass
 from typing import Any
 
 from bedchain.case.bed_checks import CARRYING_KEYS, particles_carry_the_bed
-from bedchain.case.bed_settings import coupling_s, gas_cell, gas_step, parcels, problems_with, stiffness
+from bedchain.case.bed_settings import dem_step, gas_cell, gas_step, parcels, problems_with, stiffness
 from bedchain.case.schema import Case, case_value, load_schema
 from bedchain.case.variants import Variant
 from bedchain.errors import UserError, report_user_errors
-from bedchain.physics.whole_numbers import dividing_step, is_prime
+from bedchain.physics.whole_numbers import is_prime
 
 # Young's modulus over the case's; the step goes with its root, so that its share of the Rayleigh time stays.
 # Particles too soft to carry the bed are left out.
@@ -140,9 +140,8 @@ def _particles(case: Case) -> Iterator[tuple[str, str, dict[str, Any]]]:
         if not any(particles_carry_the_bed(softer["contact.young_modulus_Pa"], *_weight_of(case))):
             yield "stiffness and step", f"stiffness_{factor:g}", softer
     for factor in STEPS:
-        changes = {"time.dem_step_s": dividing_step(coupling_s(case), case["time"]["dem_step_s"] * factor)}
         # Young's modulus stays: the share of the Rayleigh time is another
-        yield "particle step", f"step_{factor:g}", changes | {"time.allow_unstable_step": True}
+        yield "particle step", f"step_{factor:g}", dem_step(case, factor) | {"time.allow_unstable_step": True}
     for value in FRICTIONS:
         yield "ablation", f"friction_{value:g}", {"contact.friction_1": value}
     for value in RESTITUTIONS:
