@@ -13,7 +13,7 @@ DemCoupling BedSeries Deposit Guards Inlet RunReport bedState slabs
 ParticleForces
 ParticleDrag
 Liggghts
-SlabGrid BandFactor
+SlabGrid
 BandPreconditioner
 dragLaws'
 
@@ -35,7 +35,7 @@ done
 set -- "$@" -isystem /usr/include/liggghts -isystem "/usr/lib/$arch/openmpi/include"
 
 objects=$output.objects
-versions=$(g++ --version && dpkg-query -W libopenfoam libliggghts-dev || true)
+versions=$(g++ --version && dpkg-query -W libopenfoam libliggghts-dev libopenblas0-serial || true)
 state=$({ echo "$versions" "$together" "$@" && cat "$sources"/*.H; } | sha256sum)
 [ "$(cat "$objects/state" 2>/dev/null)" = "$state" ] || {
     rm -rf "$objects"
@@ -57,5 +57,6 @@ echo "$together" | xargs -P 2 -I{} sh -euc '
     g++ "$@" "-I$sources" -c "$object.new.C" -o "$object.o"
     mv "$object.new.C" "$object.C"' build {} "$objects" "$sources" "$@"
 g++ -o "$output.part" "$objects"/*.o -L/usr/lib/openmpi-system -L"/usr/lib/$arch/openmpi/lib" \
-    -lfiniteVolume -lmeshTools -lOpenFOAM -lPstream -lliggghts -lmpi -lmpi_cxx -ldl -lm
+    -L"/usr/lib/$arch/openblas-serial" -lfiniteVolume -lmeshTools -lOpenFOAM -lPstream -lliggghts -l:libopenblas.so.0 \
+    -lmpi -lmpi_cxx -ldl -lm
 mv "$output.part" "$output"

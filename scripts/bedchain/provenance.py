@@ -15,7 +15,9 @@ from typing import Any
 
 from bedchain.meter import BYTES_IN_MB, physical_memory_bytes
 
-DEBIAN_PACKAGES = ("liggghts", "libliggghts-dev", "openfoam", "libopenfoam", "libopenmpi-dev", "g++")
+DEBIAN_PACKAGES = (
+    "liggghts", "libliggghts-dev", "openfoam", "libopenfoam", "libopenmpi-dev", "libopenblas0-serial", "g++",
+)  # fmt: skip
 
 
 def python_packages() -> dict[str, str]:
