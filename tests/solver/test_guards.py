@@ -174,7 +174,8 @@ def test_a_lost_particle_stops_the_run_and_leaves_the_segments_before(faulty_bed
 
 
 def test_a_lost_particle_stops_both_ranks(faulty_bed):
-    stopped(faulty_bed(2, [("superficial_velocity", "40"), ("ramp_time", "0.002")]), 2, LOST)
+    # a stronger blast ends the gas first, on some machines
+    stopped(faulty_bed(2, [("superficial_velocity", "20"), ("ramp_time", "0.002")]), 2, LOST)
 
 
 def test_the_series_reports_the_deepest_overlap(faulty_bed):
