@@ -2,6 +2,8 @@
 
 #include "ParticleForces.H"
 
+#include <array>
+
 bedFoam::ParticleForces::ParticleForces(
     const Properties& properties, const SlabGrid& grid, const dictionary& parameters
 )
@@ -32,26 +34,33 @@ void bedFoam::ParticleForces::apply(
     const double displaced = properties_.volume * properties_.gasDensity; // by a particle [kg]
     const double* const* velocity = dem.velocity();
     double* const* force = dem.force();
-    double* const* dragged = dem.draggedVelocity();
+    double* const* keptVelocity = dem.draggedVelocity();
+    // Across a single layer even a force of round-off would make the bed buckle. Where one gas cell
+    // spans many layers the gas does not move across them and its pressure is even, but it drags
+    std::array<bool, 3> dragged, pressed;
+    for (int d = 0; d < 3; ++d)
+    {
+        pressed[d] = mesh.solutionD()[d] > 0;
+        dragged[d] = pressed[d] || freeAcross_;
+    }
+    const double buoyancy = displaced * properties_.gravity;
     vector dragOnParticles = Zero;
     scalar dragSize = 0, lift = 0;
     for (size_t i = 0; i < drags.size(); ++i)
     {
         const Six around = grid_.sample<6>(values, stencils[i]);
+        std::array<double, 3> drag, pressure;
         for (int d = 0; d < 3; ++d)
         {
-            // Across a single layer even a force of round-off would make the bed buckle. Where one gas cell
-            // spans many layers the gas does not move across them and its pressure is even, but it drags
-            const bool moves = mesh.solutionD()[d] > 0 || freeAcross_;
-            const double drag = moves ? drags[i].coefficient * (around[d] - drags[i].undragged[d]) : 0;
-            const double buoyancy = d == 2 ? displaced * properties_.gravity : 0;
-            const double pressure = mesh.solutionD()[d] > 0 ? -displaced * around[d + 3] : 0;
-            force[i][d] = drag + pressure + buoyancy;
-            dragged[i][d] = velocity[i][d] + properties_.interval * drag / properties_.mass;
-            dragOnParticles[d] += drag;
-            dragSize += std::abs(drag);
-            if (d == 2) lift += drag + pressure;
+            drag[d] = dragged[d] ? drags[i].coefficient * (around[d] - drags[i].undragged[d]) : 0;
+            pressure[d] = pressed[d] ? -displaced * around[d + 3] : 0;
+            force[i][d] = drag[d] + pressure[d];
+            keptVelocity[i][d] = velocity[i][d] + properties_.interval * drag[d] / properties_.mass;
+            dragOnParticles[d] += drag[d];
         }
+        force[i][2] += buoyancy;
+        dragSize += std::abs(drag[0]) + std::abs(drag[1]) + std::abs(drag[2]);
+        lift += drag[2] + pressure[2];
     }
     reduce(lift, sumOp<scalar>());
     shareOnGas_ =
