@@ -1,58 +1,19 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""The band that solves the pressure: against numpy and against multigrid, and where multigrid takes over."""
+"""The band that solves the pressure: against multigrid, and where multigrid takes over."""
 
 import shutil
-import subprocess
 from pathlib import Path
 
-import numpy as np
 import pandas as pd
-import pytest
 
 from bedchain.dem import small_cases
 from bedchain.dem.lattices import lattice
 from bedchain.dem.small_cases import Setup, run_gas
 
-HERE = Path(__file__).parent
-ROOT = HERE.parents[1]
-SOURCES = ROOT / "openfoam_case/solver/bedFoam"
-ROUND_OFF = 1e-10  # the matrices' conditions are below 1e4
+ROOT = Path(__file__).parents[2]
 MULTIGRID = "{ solver GAMG; smoother DIC; nCellsInCoarsestLevel 10; }"
 DIAMETER, CELL = 1e-3, 5e-3
 STEPS_S = 0.01
-
-
-@pytest.fixture(scope="module")
-def band_factor(tmp_path_factory):
-    """Function that solves a symmetric matrix of a band's width by the solver's own code."""
-    program = tmp_path_factory.mktemp("band") / "band_factor"
-    sources = [str(HERE / "band_factor.C"), str(SOURCES / "BandFactor.C")]
-    checks = ["-fsanitize=address,undefined", "-D_GLIBCXX_ASSERTIONS"]
-    subprocess.run(["g++", "-std=c++14", "-O2", *checks, f"-I{SOURCES}", *sources, "-o", program], check=True)
-
-    def solve(matrix, width, right):
-        padded = np.pad(matrix, (0, width))
-        columns = [padded[column : column + width + 1, column] for column in range(len(matrix))]
-        numbers = [len(matrix), width, *np.ravel(columns), *right]
-        text = " ".join(
-            repr(float(number)) if index > 1 else str(number) for index, number in enumerate(numbers)
-        )
-        done = subprocess.run([program], input=text, capture_output=True, text=True, check=True)
-        return np.array(done.stdout.split(), dtype=float)
-
-    return solve
-
-
-@pytest.mark.parametrize("sign", [1, -1])
-@pytest.mark.parametrize(("size", "width"), [(1, 0), (3, 1), (8, 3), (17, 4), (30, 7), (41, 20), (5, 9)])
-def test_a_band_is_solved_to_round_off(band_factor, size, width, sign):
-    rng = np.random.default_rng(size * 100 + width)
-    lower = np.tril(np.triu(rng.normal(size=(size, size)), -width))
-    matrix = sign * (lower @ lower.T + np.eye(size))
-    right = rng.normal(size=size)
-    assert band_factor(matrix, width, right) == pytest.approx(
-        np.linalg.solve(matrix, right), rel=ROUND_OFF, abs=ROUND_OFF
-    )
 
 
 def held_particles(folder, width_m):

@@ -5,9 +5,10 @@
 #include <vector>
 
 // LAPACK's Cholesky factors of a band matrix, and the solution by them (Anderson et al., LAPACK Users' Guide)
-extern "C"
-{
-void dpbtrf_(const char* triangle, const int* size, const int* width, double* band, const int* stride, int* info);
+extern "C" {
+void dpbtrf_(
+    const char* triangle, const int* size, const int* width, double* band, const int* stride, int* info
+);
 void dpbtrs_(
     const char* triangle, const int* size, const int* width, const int* columns, const double* band,
     const int* stride, double* values, const int* length, int* info
@@ -18,10 +19,10 @@ namespace
 {
 
 //- The last matrix and its factors
-class BandFactor
+class BandFactors
 {
     scalarField diagonal_, upper_;
-    double sign_ = 1; // of the diagonal: LAPACK takes positive definite matrices, OpenFOAM's pressure is negative
+    double sign_ = 1; // of the diagonal: LAPACK wants it positive, that of the pressure is negative
     int size_ = 0, width_ = 0, failed_ = 1;
     std::vector<double> band_; // columns from the diagonal down
 
@@ -49,7 +50,7 @@ public:
         dpbtrf_("L", &size_, &width_, band_.data(), &ld, &failed_);
     }
 
-    //- Replace a right-hand side by the solution; a matrix without factors leaves it, and the solver without help
+    //- Replace a right-hand side by the solution; without factors it stays, and the solver goes on plainly
     void solve(solveScalarField& values) const
     {
         if (failed_) return;
@@ -63,7 +64,7 @@ public:
 //- OpenFOAM's solvers of symmetric matrices take it by its name, `band`
 class BandPreconditioner : public lduMatrix::preconditioner
 {
-    static BandFactor factor_; // outlives a solver, which is made anew for each corrector
+    static BandFactors factors_; // outlives a solver, which is made anew for each corrector
 
 public:
 
@@ -71,17 +72,17 @@ public:
 
     BandPreconditioner(const lduMatrix::solver& solver, const dictionary&) : lduMatrix::preconditioner(solver)
     {
-        factor_.factorize(solver.matrix());
+        factors_.factorize(solver.matrix());
     }
 
     void precondition(solveScalarField& wA, const solveScalarField& rA, const direction) const override
     {
         wA = rA;
-        factor_.solve(wA);
+        factors_.solve(wA);
     }
 };
 
-BandFactor BandPreconditioner::factor_;
+BandFactors BandPreconditioner::factors_;
 defineTypeNameAndDebug(BandPreconditioner, 0);
 lduMatrix::preconditioner::addsymMatrixConstructorToTable<BandPreconditioner> addBandPreconditioner;
 
