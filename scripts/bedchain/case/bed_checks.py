@@ -10,7 +10,7 @@ from bedchain.physics.whole_numbers import is_multiple, is_prime, nearest_multip
 
 # up to it collisions have their restitution on average, each within a few per cent (`./run verify`), and beds
 # stay at rest to 0.5 (`./run stability`); time.allow_unstable_step overrides it
-RAYLEIGH_SHARE_MAX = 0.33
+RAYLEIGH_SHARE_MAX = 0.4
 # share of the height that the settled bed may take: it starts 1.4 times as high, as a loose lattice
 FILLED_HEIGHT_MAX = 0.7
 # of the diameter: the lowest layer of the paper's bed has 0.06; where it is 0.095 a bed sags by 16 %

@@ -32,7 +32,7 @@ ROLLING_FRICTION = 0.1
 # impacts resolved by few steps: particles as soft as a bed of two cores carries
 LONG_STEP, LONG_STEPS, SOFT, PAIRS = RAYLEIGH_SHARE_MAX, 50, 1.9e5, 15
 SPEEDS = (0.05, 0.2, 0.5)  # [m/s], of either sphere
-SCATTER = 0.04
+SCATTER = 0.06
 LATE = 0.7  # share of `SLIDE` after which the sphere rolls, resisted or not
 
 
@@ -86,15 +86,14 @@ def long_step_restitutions(folder: Path, speed: float, restitution: float) -> np
     The step is the largest that a case may have, `LONG_STEP` of the Rayleigh time.
     """
     step = float(rounded_down(LONG_STEP * rayleigh_time(SOFT, POISSON, DENSITY, SPHERE / 2)))
-    sections = case_sections(LONG_STEPS * step, restitution_1=restitution, young_modulus_Pa=SOFT)
+    span = round(LONG_STEPS * step, 12)  # a whole number of steps in decimals too
+    sections = case_sections(span, restitution_1=restitution, young_modulus_Pa=SOFT)
     sections["time"] |= {"dem_step_s": step, "gas_step_s": step}
     gaps = 1.01 * SPHERE + 2 * speed * step * np.arange(PAIRS) / PAIRS
     heights = 1.2 * SPHERE * (1 + np.arange(PAIRS))
     left = [[0.008, height, speed, 0, SPHERE] for height in heights]
     right = [[0.008 + gap, height, -speed, 0, SPHERE] for gap, height in zip(gaps, heights, strict=True)]
-    frames = run_particles(
-        Setup(folder, sections, np.array(left + right), {"gravity": 0.0}), LONG_STEPS * step
-    )
+    frames = run_particles(Setup(folder, sections, np.array(left + right), {"gravity": 0.0}), span)
     parting = frames[-1, PAIRS:, 3] - frames[-1, :PAIRS, 3]
     return parting / (2 * speed)
 
