@@ -18,8 +18,10 @@ from bedchain.physics.packing import (
 )
 from bedchain.physics.whole_numbers import ratio
 
-# neighbour skin: a list is valid until a particle has moved by half of it; changes the speed, not the physics
-SKIN_DIAMETERS = 0.5
+# Neighbour skin [diameters]: a list is valid until a particle has moved by half of it. It changes the speed,
+# not the physics: lists are made anew by distance, forces by step, so that the cheapest skin grows with the
+# root of the step, here of step over diameter [s/m]
+SKIN_LEAST, SKIN_MOST, SKIN_GROWTH = 0.5, 0.9, 2.5
 START_SPEED_M_S = 0.05  # random, breaks the lattice; without effect after the fall
 DUMP_SUFFIX = {"binary": "bin", "text": "txt"}
 
@@ -94,6 +96,7 @@ def derived_parameters(case: Case) -> list[Parameter]:
     diameter, thickness = particles["diameter_m"], bed["thickness_m"]
     many = bed["layers"] == "many"
     cells_y = max(1, round(thickness / cell)) if many else 1
+    skin = skin_diameters(time["dem_step_s"], diameter)
     return [
         Parameter("gravity", GRAVITY_M_S2, "m/s2", "constant, along -z"),
         Parameter("rolling_law", rolling_law(case), "name", "from contact.rolling_friction_1"),
@@ -104,7 +107,7 @@ def derived_parameters(case: Case) -> list[Parameter]:
         Parameter("slab_low", -thickness / 2, "m", "-bed.thickness_m / 2"),
         Parameter("slab_high", thickness / 2, "m", "bed.thickness_m / 2"),
         Parameter("depth_walls", int(many), "1", "bed.layers: 1 where particles move in y between walls"),
-        Parameter("skin", SKIN_DIAMETERS * diameter, "m", f"{SKIN_DIAMETERS} diameters"),
+        Parameter("skin", skin * diameter, "m", f"{skin:g} diameters"),
         Parameter(
             "settle_spacing", START_SPACING_DIAMETERS * diameter, "m", f"{START_SPACING_DIAMETERS} diameters"
         ),
@@ -119,6 +122,11 @@ def derived_parameters(case: Case) -> list[Parameter]:
         Parameter("dump_suffix", DUMP_SUFFIX[case["run"]["dump_format"]], "name", "run.dump_format"),
         *drum_parameters(case),
     ]
+
+
+def skin_diameters(step_s: float, diameter_m: float) -> float:
+    """Neighbour skin for a step [s] of particles of a diameter [m], in diameters."""
+    return min(SKIN_MOST, max(SKIN_LEAST, SKIN_GROWTH * math.sqrt(step_s / diameter_m)))
 
 
 def rolling_law(case: Case) -> str:

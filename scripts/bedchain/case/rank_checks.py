@@ -6,12 +6,12 @@ from collections.abc import Iterator
 
 from bedchain.case.check_registry import Finding, reads
 from bedchain.case.chosen import AUTO
-from bedchain.case.parameters import SKIN_DIAMETERS
+from bedchain.case.parameters import SKIN_MOST
 from bedchain.case.parcels import parcel_case
 from bedchain.case.schema import Case
 from bedchain.physics.whole_numbers import ratio
 
-SLAB_MIN = SKIN_DIAMETERS / 2  # diameters: a particle moves as far before it is given to another rank
+SLAB_MIN = SKIN_MOST / 2  # diameters: a particle moves as far before it is given to another rank
 
 
 @reads("run.ranks", "gas.cell_size_m", "bed.width_m")

@@ -4,7 +4,7 @@
 import pytest
 
 from bedchain.case.gas_checks import DRAG_LAG_MAX, drag_follows_collisions
-from bedchain.case.parameters import SKIN_DIAMETERS
+from bedchain.case.parameters import SKIN_MOST
 from bedchain.physics.packing import PACKED_VOLUME_SHARE
 from bedchain.studies.verification.laws import (
     Suspension,
@@ -49,6 +49,6 @@ def test_a_gas_step_is_refused_where_drag_lags_behind_collisions():
 
 def test_no_particle_crosses_a_gas_cell_before_its_rank_is_known(tmp_path):
     # Within a skin of neighbours a particle may be beyond the slab of its rank
-    assert SKIN_DIAMETERS < 1
+    assert SKIN_MOST < 1
     narrow = ("split_z_m: 0.081", "split_z_m: 0.081\ngas:\n  cell_size_m: 9e-4")
     assert_refused(changed_case(tmp_path, narrow), "gas.cell_size_m", "smaller than a particle")

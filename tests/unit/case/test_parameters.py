@@ -8,7 +8,15 @@ import re
 import pytest
 
 from bedchain.case.load import load_case
-from bedchain.case.parameters import fluidization_line, liggghts_text, openfoam_text, solver_parameters
+from bedchain.case.parameters import (
+    SKIN_LEAST,
+    SKIN_MOST,
+    fluidization_line,
+    liggghts_text,
+    openfoam_text,
+    skin_diameters,
+    solver_parameters,
+)
 from bedchain.case.schema import load_schema
 from made import ROOT
 
@@ -23,6 +31,12 @@ def test_the_paper_s_numbers_arrive(values):
     assert (values["diameter"], values["radius"], values["density"]) == (1e-3, 5e-4, 2600)
     assert values["drag_law"] == "gidaspow"
     assert values["dump_suffix"] == "bin"
+
+
+def test_the_skin_grows_with_the_root_of_the_step_within_limits():
+    assert skin_diameters(9e-5, 1e-3) == pytest.approx(1.5 * skin_diameters(4e-5, 1e-3))
+    assert skin_diameters(2e-4, 2e-3) == skin_diameters(1e-4, 1e-3)  # of parcels, that of their particles
+    assert (skin_diameters(1e-6, 1e-3), skin_diameters(1.0, 1e-3)) == (SKIN_LEAST, SKIN_MOST)
 
 
 def test_steps_and_cells_are_derived_as_whole_numbers(values):

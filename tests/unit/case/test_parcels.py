@@ -6,7 +6,7 @@ import math
 import pytest
 
 from bedchain.case.load import load_case
-from bedchain.case.parameters import SKIN_DIAMETERS, solver_parameters, weight_per_area
+from bedchain.case.parameters import SKIN_LEAST, solver_parameters, weight_per_area
 from bedchain.case.parcels import parcel_case, particles_per_parcel
 from bedchain.case.scene import scene_of
 from bedchain.case.schema import load_schema
@@ -37,7 +37,7 @@ def test_parcels_of_one_layer_make_a_slab_as_much_thicker(tmp_path):
     values = given(case)
     assert (values["number"], particles_per_parcel(case)) == (1800, 4)
     assert (values["diameter"], values["particle_diameter"], values["thickness"]) == (2e-3, 1e-3, 2e-3)
-    assert (values["slab_low"], values["slab_high"], values["skin"]) == (-1e-3, 1e-3, 2e-3 * SKIN_DIAMETERS)
+    assert (values["slab_low"], values["slab_high"], values["skin"]) == (-1e-3, 1e-3, 2e-3 * SKIN_LEAST)
     assert values["restitution"] == pytest.approx(math.sqrt(0.62))
     assert (values["dem_step"], values["coupling_steps"]) == (3.125e-5, 16)
     for name in ("young", "friction", "density", "superficial_velocity", "gas_step", "smoothing_diameters"):

@@ -26,11 +26,13 @@ from bedchain.physics.whole_numbers import ratio
 
 SOLVERS = ("dem", "exchange", "gas")
 # Particle steps per second [1/s] of a rank, by its number of particles [1]: in a bubbling bed, and settling
-MOVING = ((4500, 8.3e6), (40500, 5.0e6), (81000, 5.1e6))
+MOVING = ((4500, 12e6), (40500, 7.1e6), (81000, 7.3e6))
+# lists of neighbours, for each particle and simulated second [s]: made anew by distance, whatever the step
+LISTS_S = 1.9e-3
 SETTLING = ((4500, 6.2e6), (81000, 4.6e6))
 EXCHANGED = 9.4e6  # particles mapped to the gas cells and back per second [1/s], of a rank
-GAS_STEP_S = 1.7e-3  # of a step of the gas with few cells [s]
-GAS_CELL_S = 2.3e-6  # added for each cell of a rank [s]
+GAS_STEP_S = 0.9e-3  # of a step of the gas with few cells [s]
+GAS_CELL_S = 1.2e-6  # added for each cell of a rank [s]
 SEGMENT_START_S = 0.8  # of a segment: start of the programs, mesh, restart and frames [s]
 
 
@@ -136,7 +138,8 @@ def solver_seconds(bed: BedSize, span_s: float, cores: int | None = None) -> dic
         dem, exchange, gas [s].
     """
     at_once = min(bed.ranks, cores or len(os.sched_getaffinity(0)))
-    dem = bed.number * span_s / bed.dem_step_s / (at_once * per_rank(MOVING, bed))
+    a_second = 1 / (bed.dem_step_s * per_rank(MOVING, bed)) + LISTS_S  # for each particle [s]
+    dem = bed.number * span_s * a_second / at_once
     if not bed.gas_cells:
         return {"dem": dem, "exchange": 0.0, "gas": 0.0}
     steps = span_s / bed.gas_step_s

@@ -29,15 +29,15 @@ def test_stages_of_the_short_bed(short):
     assert list(table.index) == SOLVER_STAGES + jobs
     measured = table["wall_s"].drop(["build_transitions_chosen", "run_chain_chosen"])  # these two were not
     assert measured.gt(0).all() and table.loc["dem", "memory_mb"] > 100
-    whole = machine_speed.solver_seconds(machine_speed.bed_of(short), 5.5)
+    whole = machine_speed.solver_seconds(machine_speed.bed_of(short), 4.5)
     assert table.loc["gas", "wall_s"] == pytest.approx(whole["gas"])
     on_one_rank = replace(machine_speed.bed_of(short), ranks=1)
-    repeat = sum(machine_speed.solver_seconds(on_one_rank, 2.0).values()) + 4 * machine_speed.SEGMENT_START_S
+    repeat = sum(machine_speed.solver_seconds(on_one_rank, 1.5).values()) + 3 * machine_speed.SEGMENT_START_S
     # two at once on the two cores of the run
     assert table.loc["repeats", "wall_s"] == pytest.approx(3 * repeat / 2)
     assert predicted(short, Speed(2, 2, 2, 2, ""))["wall_s"].sum() == pytest.approx(table["wall_s"].sum() / 2)
     stores = table.loc[["dem", "parse_dumps", "assign_cells"], "disk_mb"].sum() * 1e6
-    repeats = 3 * 81 * 9000 * disk.TRAJECTORY_BYTES
+    repeats = 3 * 61 * 9000 * disk.TRAJECTORY_BYTES
     once = short | {"comparison": short["comparison"] | {"repeats": 0}}
     assert stores - repeats == pytest.approx(disk.run_bytes(once) / disk.MARGIN, rel=0.01)
 
