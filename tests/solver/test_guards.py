@@ -147,7 +147,8 @@ def test_a_pressure_that_is_not_solved_stops_the_run(faulty_bed, tmp_path, monke
     case = tmp_path / "openfoam_case"
     shutil.copytree(stage.GAS_CASE, case)
     with (case / "system" / "fvSolution").open("a") as stream:
-        stream.write("solvers { p { preconditioner DIC; maxIter 2; relTol 0; tolerance 1e-14; } }\n")
+        few = "maxIter 2; relTol 0; tolerance 1e-14;"
+        stream.write(f"solvers {{ p {{ {few} }} pBand {{ preconditioner DIC; {few} }} }}\n")
     monkeypatch.setattr(gas_case, "GAS_CASE", case)
     monkeypatch.setattr(stage, "GAS_CASE", case)
     folder = faulty_bed(ranks)

@@ -43,7 +43,7 @@ def test_band_and_multigrid_give_the_same_gas(solver, tmp_path, monkeypatch):
     case = tmp_path / "openfoam_case"
     shutil.copytree(ROOT / "openfoam_case", case)
     with (case / "system" / "fvSolution").open("a", encoding="utf-8") as stream:
-        stream.write(f"solvers {{ p {MULTIGRID} pFinal {MULTIGRID} }}\n")
+        stream.write(f"solvers {{ pBand {MULTIGRID} pBandFinal {MULTIGRID} }}\n")
     monkeypatch.setattr(small_cases, "GAS_CASE", case)
     bed = held_particles(tmp_path / "multigrid", 0.04)
     by_multigrid = run_gas(bed, solver, STEPS_S, "constant 0.5", tight=True)

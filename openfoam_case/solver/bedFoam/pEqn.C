@@ -20,11 +20,11 @@ namespace
 // Cells in a row up to which the band is factorized: that work grows with their square, multigrid's does not
 constexpr label widestBand = 100;
 
-//- The pressure's entry in fvSolution
+//- The pressure's entry in fvSolution: multigrid, or its band where that is exact
 const dictionary& pressureSolver(const volScalarField& p, bool last)
 {
-    const label width = returnReduce(bedFoam::bandWidth(p.mesh().lduAddr()), maxOp<label>());
-    return p.mesh().solver(word(width > widestBand ? "pWide" : "p") + (last ? "Final" : ""));
+    const bool band = !Pstream::parRun() && bedFoam::bandWidth(p.mesh().lduAddr()) <= widestBand;
+    return p.mesh().solver(word(band ? "pBand" : "p") + (last ? "Final" : ""));
 }
 
 }
