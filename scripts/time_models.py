@@ -28,7 +28,7 @@ from bedchain.trajectory.store import BedFiles, read_manifest
 # a median of many runs where they are short, of three where one takes a second; a run that compiles moves no
 # median
 REPEATS = 15
-ENOUGH_S = 0.5
+ENOUGH_S = 0.2
 FEWEST = 3
 
 
