@@ -25,7 +25,7 @@ def empty(tmp_path):
 @pytest.fixture
 def with_archive(empty):
     """The same, where the cases short and paper have archives, as far as dry runs look into them."""
-    for name, start_s, end_s, frames in (("short", 1.5, 4.5, 131), ("paper", 10.0, 20.0, 411)):
+    for name, start_s, end_s, frames in (("short", 1.5, 5.0, 151), ("paper", 10.0, 20.0, 411)):
         case = load_case(empty / "cases" / name / "case.yaml")
         provenance = {
             "solver_keys": solver_keys(case, load_schema()), "start_s": start_s, "end_s": end_s,

@@ -51,9 +51,9 @@ def test_after_a_run_a_stage_far_from_its_estimate_is_named(case, estimate, tmp_
     before, _ = estimate()
     bed = tmp_path / "results" / "short"
     (bed / "dem/stamp/segment_0001").mkdir(parents=True)
-    spent = solver_seconds(bed_of(case), 2.25)
+    spent = solver_seconds(bed_of(case), 2.5)
     spent["gas"] *= 10
-    segment = {"start_s": 0, "end_s": 2.25, "folder": "dem/stamp/segment_0001"}
+    segment = {"start_s": 0, "end_s": 2.5, "folder": "dem/stamp/segment_0001"}
     segment |= {f"{name}_s": spent[name] for name in SOLVERS}
     (bed / "dem.json").write_text(json.dumps({"number": 9000, "ranks": 2, "segments": [segment]}))
     with caplog.at_level("INFO", "bedchain"):

@@ -30,7 +30,7 @@ def results(tmp_path, short):
     bed = machine_speed.bed_of(short)
     usual = machine_speed.solver_seconds(bed, 1.0)
     slower = {name: 1.2 * usual[name] for name in machine_speed.SOLVERS}
-    write_run(tmp_path / "bed", slower, bed, ((0, 0.9), (0.9, 1.8)), (20, 1, 80))
+    write_run(tmp_path / "bed", slower, bed, ((0, 1.0), (1.0, 2.0)), (20, 1, 80))
     return tmp_path / "bed"
 
 
@@ -58,7 +58,7 @@ def test_jobs_settling_repeats_and_errors_that_happened(short, results):
     log = "Step\nLoop time of 12.5 on 2 procs for 15000 steps with 9000 atoms\n"
     (results / "dem/stamp/settled/liggghts.log").write_text(log)
     (results / "trajectory.npy").write_bytes(b"x" * 1000)
-    write_run(results / "repeats/1", {"dem": 20.0, "exchange": 1, "gas": 4}, spans=((3.0, 4.5),))
+    write_run(results / "repeats/1", {"dem": 20.0, "exchange": 1, "gas": 4}, spans=((3.5, 5.0),))
     found = actual_cost(short, results, results, folders(results))
     assert found.loc["settling", "happened_wall_s"] == 12.5
     assert found.loc["dem", "happened_memory_mb"] == 111
