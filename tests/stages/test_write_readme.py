@@ -50,6 +50,15 @@ def test_a_csv_file_that_no_text_shows_is_not_made(project: Path) -> None:
     assert not (project / "cases/paper/tables/costs.csv").exists()
 
 
+def test_a_study_of_chains_alone_makes_no_table_of_beds(project: Path) -> None:
+    (project / "cases/paper/README.md").write_text(MARKED.replace("costs", "cheaper_beds"))
+    (project / "cases/paper/tables").mkdir()
+    (project / "cases/paper/tables/cheaper_beds.csv").write_text("bed\nearlier\n")
+    (project / "results/paper/tradeoff.csv").write_text("half,axis,variant,cost_s\nmcm,lag,,1\n")
+    write_readme("paper", None, project)
+    assert (project / "cases/paper/tables/cheaper_beds.csv").read_text() == "bed\nearlier\n"
+
+
 def test_without_a_case_the_csv_file_decides(project: Path) -> None:
     write_readme("paper", None, project)
     file = project / "cases/paper/tables/costs.csv"
