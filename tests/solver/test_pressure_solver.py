@@ -11,7 +11,7 @@ from bedchain.dem.lattices import lattice
 from bedchain.dem.small_cases import Setup, run_gas
 
 ROOT = Path(__file__).parents[2]
-MULTIGRID = "{ solver GAMG; smoother DIC; nCellsInCoarsestLevel 10; }"
+MULTIGRID = "{ solver GAMG; smoother DIC; nCellsInCoarsestLevel 10; tolerance 1e-13; relTol 0; }"
 DIAMETER, CELL = 1e-3, 5e-3
 STEPS_S = 0.01
 
