@@ -20,7 +20,7 @@ THICK = {
 }
 DIAMETER = 1e-3
 ROUND_OFF = 1e-12  # relative, of sums over some thousand terms
-# between runs that cut the mesh differently: one rank solves the pressure to round-off, several to a tolerance
+# between runs that cut the mesh differently: one rank solves the pressure to round-off, several to less
 SOLVER_TOLERANCE = 3e-5
 VOLUME_BALANCE = 1e-5  # of a cell's volume a step, by the pressure solve's tolerance
 WEIGHT = 0.01  # of the bed's: what still moves after the fall
