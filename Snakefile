@@ -15,7 +15,7 @@ sys.path.insert(0, f"{workflow.basedir}/scripts")
 
 from bedchain.case.presets import simulated_case
 from bedchain.case.two_fluid import is_two_fluid
-from bedchain.figure_scripts import share_process
+from bedchain.forked_scripts import share_process
 from bedchain.lifetime import begin_run
 from bedchain.rule_files import code, source_files
 from bedchain.workflow import (

@@ -1,12 +1,14 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Scripts of figures, run in copies of one process that has loaded what all of them need.
+"""Scripts of rules, run in copies of one process that has loaded what most of them need.
 
-A figure takes a second to draw, and its packages take another to load. Python's fork server loads them once a
-run, when the first figure is due, and ends with the run. It loads nothing of this library: a script sees the
+Many a script works for a second, and its packages take another to load. Python's fork server loads them once a
+run, when the first script is due, and ends with the run. It loads nothing of this library: a script sees the
 files as they are.
 """
 
+import contextlib
 import multiprocessing
+import os
 import runpy
 import shlex
 import subprocess
@@ -14,22 +16,26 @@ import sys
 from pathlib import Path
 from typing import Any
 
+from snakemake.benchmark import benchmarked
+
 # snakemake.cli: each copy would load it, as the main module of the process that asks for it
 LOADED = [
-    "snakemake.cli", "snakemake.iocontainers", "numpy", "pandas", "matplotlib.pyplot",
-    "matplotlib.backends.backend_agg", "matplotlib.backends.backend_pdf", "fontTools.subset",
+    "snakemake.cli", "snakemake.iocontainers", "numpy", "pandas", "scipy.sparse.linalg", "scipy.sparse.csgraph",
+    "numba", "matplotlib.pyplot", "matplotlib.backends.backend_agg", "matplotlib.backends.backend_pdf",
+    "fontTools.subset",
 ]  # fmt: skip
 
+# what snakemake sets to the threads of a job, for those that a copy has already loaded
+THREADS = ("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS")
 
-def share_process(script_class: Any, prefix: str = "plot_") -> None:
-    """Have the scripts of some rules run in copies of one process; those with a benchmark run as before.
+
+def share_process(script_class: Any) -> None:
+    """Have the scripts of rules on one thread run in copies of one process; others run as before.
 
     Parameters
     ----------
     script_class : type
         Snakemake's ``PythonScript``; its ``execute_script`` is replaced.
-    prefix : str
-        Of the scripts' names.
     """
     plainly = script_class.execute_script
     if plainly.__module__ == __name__:  # the Snakefile is read again for the second bed
@@ -37,16 +43,18 @@ def share_process(script_class: Any, prefix: str = "plot_") -> None:
     context = multiprocessing.get_context("forkserver")
     context.set_forkserver_preload(LOADED)
     context.set_executable(shlex.split(sys.executable)[0])  # as `workflow.quote_interpreter` left it
+    os.environ.update(dict.fromkeys(THREADS, "1"))  # of the server; of any other job by snakemake
 
     def execute_script(job: Any, file: str, edit: bool = False) -> None:
         other_python = job.conda_env or job.container_img or job.env_modules
-        named = Path(str(job.path.get_path_or_uri(secret_free=True))).name.startswith(prefix)
-        if edit or not named or job.bench_record is not None or other_python:
+        if edit or job.threads != 1 or other_python:
             plainly(job, file, edit)
             return
         process = context.Process(target=run_script, args=(file,))
         process.start()
-        process.join()
+        record = job.bench_record
+        with contextlib.nullcontext() if record is None else benchmarked(process.pid, record):
+            process.join()
         if process.exitcode:
             raise subprocess.CalledProcessError(process.exitcode, f"{sys.executable} {file}")
 

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Scripts of figures are copies of one process; they fail, and end with a killed run, as others do."""
+"""Scripts are copies of one process; they fail, and end with a killed run, as any job does."""
 
 import os
 import shlex
@@ -19,37 +19,40 @@ SNAKEFILE = """
 import sys
 sys.path.insert(0, {scripts!r})
 from snakemake.script import PythonScript
-from bedchain import figure_scripts
+from bedchain import forked_scripts
 from bedchain.lifetime import begin_run
 if workflow.is_main_process:
-    del figure_scripts.LOADED[1:]
+    del forked_scripts.LOADED[1:]
     begin_run()
     sys.executable = {python!r}
-    figure_scripts.share_process(PythonScript)
-    figure_scripts.share_process(PythonScript)
+    forked_scripts.share_process(PythonScript)
+    forked_scripts.share_process(PythonScript)
 rule all:
     input: "a.txt", "b.txt", "other.txt"
 rule a:
     output: "a.txt"
-    script: "plot_a.py"
+    script: "write.py"
 rule b:
     output: "b.txt"
-    script: "plot_b.py"
+    benchmark: "b.tsv"
+    script: "write.py"
 rule other:
     output: "other.txt"
-    script: "other.py"
+    threads: 2
+    script: "write.py"
 rule wrong:
     output: "wrong.txt"
-    script: "plot_wrong.py"
+    script: "wrong.py"
 rule long:
     output: "long.txt"
-    script: "plot_long.py"
+    script: "long.py"
 """
 WRITE = """
-import os, sys
+import os, sys, time
 from pathlib import Path
 loaded = [name for name in sys.modules if name.startswith("bedchain.")]
-Path(snakemake.output[0]).write_text(f"{os.getppid()} {len(sys.argv)} {loaded}")
+time.sleep(1.0)
+Path(snakemake.output[0]).write_text(f"{os.getppid()} {len(sys.argv)} {os.environ['OMP_NUM_THREADS']} {loaded}")
 """
 LONG = """
 import os, time
@@ -59,13 +62,12 @@ end_with_run()
 Path("process.txt").write_text(str(os.getpid()))
 time.sleep(600)
 """
-LIBRARY = "['bedchain.figure_scripts']"
+LIBRARY = "['bedchain.forked_scripts']"
 
 
 @pytest.fixture
 def folder(tmp_path):
-    scripts = {"plot_a": WRITE, "plot_b": WRITE, "other": WRITE, "plot_long": LONG}
-    scripts["plot_wrong"] = "raise ValueError('no such colour')"
+    scripts = {"write": WRITE, "long": LONG, "wrong": "raise ValueError('no such colour')"}
     for name, text in scripts.items():
         (tmp_path / f"{name}.py").write_text(text)
     (tmp_path / "my venv").symlink_to(sys.prefix)
@@ -81,12 +83,15 @@ def start(folder, target):
     return subprocess.Popen(command, cwd=folder, env=environment, start_new_session=True, **pipes)
 
 
-def test_figures_share_a_process_and_others_do_not(folder):
+def test_scripts_on_one_thread_share_a_process_and_others_do_not(folder):
     run = start(folder, "all")
     assert "Traceback" not in run.communicate(timeout=PATIENCE_S)[0] and run.returncode == 0
     a, b, other = ((folder / f"{name}.txt").read_text().split(maxsplit=1) for name in ("a", "b", "other"))
     assert a == b and a[0] != other[0]
-    assert a[1] == f"1 {LIBRARY}" and other[1] == "1 []"
+    assert a[1] == f"1 1 {LIBRARY}" and other[1] == "1 2 []"
+    names, values = ((folder / "b.tsv").read_text().splitlines()[row].split("\t") for row in (0, 1))
+    benchmark = dict(zip(names, values, strict=True))
+    assert float(benchmark["s"]) >= 1.0 and float(benchmark["max_rss"]) > 1.0
 
 
 def test_an_error_is_shown_and_fails_the_run(folder):
