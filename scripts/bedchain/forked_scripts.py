@@ -21,16 +21,16 @@ from snakemake.benchmark import benchmarked
 # snakemake.cli: each copy would load it, as the main module of the process that asks for it
 LOADED = [
     "snakemake.cli", "snakemake.iocontainers", "numpy", "pandas", "scipy.sparse.linalg", "scipy.sparse.csgraph",
-    "numba", "matplotlib.pyplot", "matplotlib.backends.backend_agg", "matplotlib.backends.backend_pdf",
-    "fontTools.subset",
+    "scipy.spatial", "scipy.special", "numba", "tqdm", "matplotlib.pyplot", "matplotlib.backends.backend_agg",
+    "matplotlib.backends.backend_pdf", "fontTools.subset",
 ]  # fmt: skip
 
-# what snakemake sets to the threads of a job, for those that a copy has already loaded
+# read when a package is loaded: no script draws its speed from more threads than one
 THREADS = ("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS")
 
 
 def share_process(script_class: Any) -> None:
-    """Have the scripts of rules on one thread run in copies of one process; others run as before.
+    """Have the scripts of rules run in copies of one process; those of another Python run as before.
 
     Parameters
     ----------
@@ -43,11 +43,11 @@ def share_process(script_class: Any) -> None:
     context = multiprocessing.get_context("forkserver")
     context.set_forkserver_preload(LOADED)
     context.set_executable(shlex.split(sys.executable)[0])  # as `workflow.quote_interpreter` left it
-    os.environ.update(dict.fromkeys(THREADS, "1"))  # of the server; of any other job by snakemake
+    os.environ.update(dict.fromkeys(THREADS, "1"))  # of the server; a shell's are set by snakemake
 
     def execute_script(job: Any, file: str, edit: bool = False) -> None:
         other_python = job.conda_env or job.container_img or job.env_modules
-        if edit or job.threads != 1 or other_python:
+        if edit or other_python:
             plainly(job, file, edit)
             return
         process = context.Process(target=run_script, args=(file,))
