@@ -32,11 +32,14 @@ if TYPED and WORDS.get("studies", True):
         time_limits_or_exit(CASE, limits_min)
 
 
-# kill or the end of a terminal ends all jobs within seconds, as Ctrl-C does.
+# kill or the end of a terminal ends all jobs within seconds, as Ctrl-C does. Jobs of this machine have no limit of so many
+# a second: with one, snakemake goes through all that wait once a second for each job so far, a tenth of a core in the end.
 if TYPED:
 
     onstart:
         end_all_at_sigterm()
+        if not workflow.resource_settings.nodes:
+            workflow.scheduler.job_rate_limiter = None
 
 
 # The last line of a run that made the report says where it is.
