@@ -13,6 +13,7 @@ import pandas as pd
 from bedchain.chains import counting, dynamic, registry
 from bedchain.chains.between_steps import Fractions, learn_fractions, mixing_by_frame
 from bedchain.chains.chain import Chain
+from bedchain.chains.counting import Counts
 from bedchain.chains.estimators import transition_matrix
 from bedchain.chains.registry import ModelSettings
 from bedchain.files import write_csv
@@ -92,25 +93,25 @@ def learning_rows(
     """
     cells, n_cells = learning.cells, grid.n_cells
     moves = (len(cells) - lag.frames) * cells.shape[1]
-    count: Callable[[], Any]
-    if model == "static":
-        count = lambda: counting.count_moves(cells, n_cells, lag.frames)  # noqa: E731
-        counts = count()
-        estimate: Callable[[], Any] = lambda: transition_matrix(counts, estimator)  # noqa: E731
-    elif model != "dynamic":
+    if model not in ("static", "dynamic"):
 
         def learn() -> None:
             registry.learn(model, learning, grid, lag.frames, estimator, **options)
             learn_fractions(learning, n_cells, lag.frames, estimator)
 
         return [measured(f"{model}_learn", learn, moves, "particle moves")]
-    else:
-        count = lambda: (  # noqa: E731
-            counting.count_pairs(cells, n_cells, lag.frames),
-            counting.count_moves(cells, n_cells, lag.frames),
-        )
-        double, single = count()
-        estimate = lambda: dynamic.from_counts(double, single, grid, lag.seconds, estimator)  # noqa: E731
+    counts: list[Counts] = []  # of the last run
+
+    def count() -> None:
+        double = [counting.count_pairs(cells, n_cells, lag.frames)] if model == "dynamic" else []
+        counts[:] = [*double, counting.count_moves(cells, n_cells, lag.frames)]
+
+    def estimate() -> None:
+        if model == "dynamic":
+            dynamic.from_counts(counts[0], counts[1], grid, lag.seconds, estimator)
+        else:
+            transition_matrix(counts[0], estimator)
+
     return [
         measured(f"{model}_count", count, moves, "particle moves"),
         measured(f"{model}_matrix", estimate, n_cells, "cells"),
