@@ -207,3 +207,10 @@ def test_a_figure_is_drawn_by_the_script_of_its_rule(with_archive):
     assert done.returncode == 0, done.stderr
     for file, rule in figures.items():
         assert (with_archive / file).read_text() == f"{rule.removeprefix('paper_')} for {rule}"
+
+
+def test_what_waits_is_looked_at_once_for_each_job(tmp_path):
+    asked = [f"results/short/{name}" for name in ("table1.csv", "audit.csv", "parameters.lig")]
+    done = snakemake(linked(tmp_path / "folder"), "--cores", "1", "--verbose", "--", *asked)
+    assert done.returncode == 0
+    assert sum(line.startswith("Ready jobs") for line in done.stderr.splitlines()) == len(asked)
