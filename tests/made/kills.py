@@ -138,8 +138,8 @@ def _state(process: Path) -> str:
 
 
 def _without_times(content: bytes) -> bytes:
-    """A record or manifest without the wall times of its segments; other files as they are."""
-    return re.sub(rb'"(wall|dem|exchange|gas)_s": [0-9.e+-]+', b"", content)
+    """A record or manifest without the times that its segments took; other files as they are."""
+    return re.sub(rb'"(wall|cpu|dem|exchange|gas)_s": [0-9.e+-]+', b"", content)
 
 
 def kill_one(folder: Folder, kind: str, rng: np.random.Generator, number: int = signal.SIGKILL) -> str | None:
