@@ -2,9 +2,10 @@
 """Estimated cost of a case, and after a run its actual cost: results/<case>/estimate.csv, estimate.txt."""
 
 import os
-from collections.abc import Iterable
+from collections.abc import Iterable, Mapping
 from pathlib import Path
 
+import numpy as np
 import pandas as pd
 
 from bedchain.case.presets import read_presets
@@ -14,9 +15,11 @@ from bedchain.files import write_csv, write_text
 from bedchain.stage import LOG, run_stage
 from bedchain.studies.cost.actual import FACTOR_AIM, actual_cost, beside_actual, far_from_estimate
 from bedchain.studies.cost.estimate import predicted
-from bedchain.studies.cost.machine_speed import bed_of, calibrate
+from bedchain.studies.cost.machine_speed import Speed, bed_of, calibrate
+from bedchain.studies.cost.more_ranks import more_ranks
 from bedchain.studies.expectation import expected_of
 from bedchain.studies.expectation import lines as expected_lines
+from bedchain.trajectory.store import BedFiles
 
 UNITS = {"wall_s": "s", "memory_mb": "MB", "disk_mb": "MB on disk", "error_floors": "noise floors"}
 SHOWN = {
@@ -25,6 +28,11 @@ SHOWN = {
     "done_1": ("share", "done"),
     "ratio_1": ("ratio", "of times"),
 }
+RANKS = {
+    "ranks": ("", "ranks"), "fullest_slab_1": ("fullest slab", "over mean"), "twice_1": ("pairs", "twice"),
+    "wall_s": ("the bed", "s"), "speedup_1": ("", "faster"),
+}  # fmt: skip
+FRAMES = 100  # of a bed that is there: enough for the mean of its fullest slab
 BUSY_CORES = 0.5  # other programs that keep more of the machine busy are worth a word
 
 
@@ -58,7 +66,9 @@ def estimate_cost(
     expected = predicted(case, speed, read_presets(presets).values(), archived)
     found = beside_actual(expected, actual_cost(case, results, table.parent, folders))
     write_csv(found.reset_index(), table)
-    write_text(text, "\n".join([*header(case, speed.source, archived), lines(found), *of_the_bed(case), ""]))
+    ranks = [] if archived else on_more_ranks(case, speed, results)
+    parts = [*header(case, speed.source, archived), lines(found), *ranks, *of_the_bed(case), ""]
+    write_text(text, "\n".join(parts))
     for name in far_from_estimate(found):
         LOG.info(
             "%s came out %.2f times as long as estimated, more than %g",
@@ -85,11 +95,27 @@ def of_the_bed(case: Case) -> list[str]:
     return expected_lines(expected_of(scene_of(case), case["mixing"]["split_z_m"]))
 
 
-def lines(table: pd.DataFrame) -> str:
+def on_more_ranks(case: Case, speed: Speed, results: Path) -> list[str]:
+    """The simulation on more ranks than here, with its own slabs where the bed is there."""
+    files = BedFiles(results / "trajectory.npy", results / "trajectory.json")
+    x_m = None
+    if files.trajectory.exists() and files.metadata.exists():
+        store, described = files.open()
+        later = np.flatnonzero(np.array(described["times_s"]) >= case["learning"]["start_s"])
+        x_m = store[later[:: max(1, later.size // FRAMES)], 0] if later.size else None
+    table = more_ranks(case, speed, x_m)
+    about = "spread evenly" if x_m is None else "as they are from the learning window on"
+    return [
+        f"on more ranks, each with a core like one of these, particles {about}; messages come on top",
+        lines(table.set_index("ranks"), RANKS),
+    ]
+
+
+def lines(table: pd.DataFrame, shown: Mapping[str, tuple[str, str]] = SHOWN) -> str:
     """The table with short numbers, without columns of which nothing is known."""
     known = table.dropna(axis="columns", how="all")
     short = known.map(lambda value: "" if pd.isna(value) else f"{value:,.{0 if value >= 100 else 2}f}")
-    short.columns = pd.MultiIndex.from_tuples([SHOWN[name] for name in known.columns])
+    short.columns = pd.MultiIndex.from_tuples([shown[name] for name in known.columns])
     return short.rename_axis(None).to_string()
 
 

@@ -1,9 +1,9 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Scripts of rules, run in copies of one process that has loaded what most of them need.
 
-Many a script works for a second, and its packages take another to load. Python's fork server loads them once a
-run, when the first script is due, and ends with the run. It loads nothing of this library: a script sees the
-files as they are.
+Many a script works for a second, and its packages take another to load. Python's fork server loads them once
+a run, when the first script is due, and ends with the run. It loads nothing of this library: a script sees
+the files as they are.
 """
 
 import contextlib
@@ -20,10 +20,10 @@ from snakemake.benchmark import benchmarked
 
 # snakemake.cli: each copy would load it, as the main module of the process that asks for it
 LOADED = [
-    "snakemake.cli", "snakemake.iocontainers", "numpy", "pandas", "scipy.sparse.linalg", "scipy.sparse.csgraph",
-    "scipy.spatial", "scipy.special", "numba", "tqdm", "matplotlib.pyplot", "matplotlib.backends.backend_agg",
-    "matplotlib.backends.backend_pdf", "fontTools.subset",
-]  # fmt: skip
+    *("snakemake.cli", "snakemake.iocontainers", "numpy", "pandas", "numba", "tqdm", "matplotlib.pyplot"),
+    *("scipy.sparse.linalg", "scipy.sparse.csgraph", "scipy.spatial", "scipy.special"),
+    *("matplotlib.backends.backend_agg", "matplotlib.backends.backend_pdf", "fontTools.subset"),
+]
 
 # read when a package is loaded: no script draws its speed from more threads than one
 THREADS = ("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS")

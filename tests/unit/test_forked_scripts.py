@@ -49,7 +49,8 @@ import os, sys, time
 from pathlib import Path
 loaded = [name for name in sys.modules if name.startswith("bedchain.")]
 time.sleep(1.0)
-Path(snakemake.output[0]).write_text(f"{os.getppid()} {len(sys.argv)} {os.environ['OMP_NUM_THREADS']} {loaded}")
+threads = os.environ["OMP_NUM_THREADS"]
+Path(snakemake.output[0]).write_text(f"{os.getppid()} {len(sys.argv)} {threads} {loaded}")
 """
 LONG = """
 import os, time

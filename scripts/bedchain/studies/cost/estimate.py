@@ -94,11 +94,10 @@ def solver_stages(case: Case, speed: Speed) -> dict[str, Numbers]:
     return rows
 
 
-def solver_wall(bed: BedSize, span_s: float, speed: Speed) -> Numbers:
+def solver_wall(bed: BedSize, span_s: float, speed: Speed, cores: int | None = None) -> Numbers:
     """Wall time of each part of the solver for a span of simulated time, on this machine [s]."""
-    return {
-        name: wall / getattr(speed, name) for name, wall in machine_speed.solver_seconds(bed, span_s).items()
-    }
+    expected = machine_speed.solver_seconds(bed, span_s, cores)
+    return {name: wall / getattr(speed, name) for name, wall in expected.items()}
 
 
 def run_disk(case: Case, bed: BedSize, span_s: float) -> float:
