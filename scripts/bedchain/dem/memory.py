@@ -12,8 +12,9 @@ from bedchain.errors import UserError
 from bedchain.meter import physical_memory_bytes
 from bedchain.physics.whole_numbers import ratio
 
-# Measured on the short and the paper's bed: mpirun and Python, each rank, each particle of the coupled solver
-RUN_BYTES, RANK_BYTES, PARTICLE_BYTES = 96e6, 87e6, 1.5e3
+# Measured on the short and the paper's bed: mpirun and Python, and each rank; on a million particles on two
+# ranks, which take 1.99 GB while they write a restart: each particle of the coupled solver
+RUN_BYTES, RANK_BYTES, PARTICLE_BYTES = 96e6, 87e6, 1.7e3
 GAS_CELL_BYTES = 2e3  # an estimate: some 100 fields, matrices and addresses of 8 bytes, twice
 JOB_BYTES = 230e6  # of a job of the chains: Python and its packages
 MOVE_BYTES = 23.0  # of a particle over a frame of the learning window: (580 - 230) MB for 15.5 million

@@ -18,7 +18,7 @@ def test_the_paper_s_bed_needs_less_than_a_gigabyte(paper):
 def test_memory_grows_with_particles_gas_cells_and_frames(paper):
     usual = memory_needs(paper)
     many = memory_needs(paper | {"particles": paper["particles"] | {"number": 10_000_000}})
-    assert many["the simulation"] - usual["the simulation"] == pytest.approx(1.5e3 * (1e7 - 81000))
+    assert many["the simulation"] - usual["the simulation"] == pytest.approx(1.7e3 * (1e7 - 81000))
     fine = memory_needs(paper | {"gas": paper["gas"] | {"cell_size_m": 1e-3}})
     assert fine["the simulation"] > usual["the simulation"] + 400e6
     alike = memory_needs(paper | {"chain": paper["chain"] | {"models": ["recurrence"]}})
