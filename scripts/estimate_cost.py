@@ -29,9 +29,11 @@ SHOWN = {
     "ratio_1": ("ratio", "of times"),
 }
 RANKS = {
-    "ranks": ("", "ranks"), "fullest_slab_1": ("fullest slab", "over mean"), "twice_1": ("pairs", "twice"),
-    "wall_s": ("the bed", "s"), "speedup_1": ("", "faster"),
-}  # fmt: skip
+    "fullest_slab_1": ("fullest slab", "over mean"),
+    "twice_1": ("pairs", "twice"),
+    "wall_s": ("the bed", "s"),
+    "speedup_1": ("", "faster"),
+}
 FRAMES = 100  # of a bed that is there: enough for the mean of its fullest slab
 BUSY_CORES = 0.5  # other programs that keep more of the machine busy are worth a word
 
@@ -66,7 +68,7 @@ def estimate_cost(
     expected = predicted(case, speed, read_presets(presets).values(), archived)
     found = beside_actual(expected, actual_cost(case, results, table.parent, folders))
     write_csv(found.reset_index(), table)
-    ranks = [] if archived else on_more_ranks(case, speed, results)
+    ranks = on_more_ranks(case, speed, results) if "dem" in expected.index else []
     parts = [*header(case, speed.source, archived), lines(found), *ranks, *of_the_bed(case), ""]
     write_text(text, "\n".join(parts))
     for name in far_from_estimate(found):

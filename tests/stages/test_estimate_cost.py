@@ -9,6 +9,7 @@ import pytest
 
 from bedchain.case.load import load_case
 from bedchain.studies.cost.machine_speed import SOLVERS, bed_of, solver_seconds
+from bedchain.trajectory.store import STORED, trajectory_metadata
 from estimate_cost import estimate_cost
 from made import ROOT
 
@@ -45,6 +46,7 @@ def test_before_a_run_everything_is_estimated_by_a_probe(case, estimate, tmp_pat
     assert table["wall_s"].gt(0).all() and table["happened_wall_s"].isna().all()
     assert table.loc["run_chain_static", "error_floors"] == 2.5
     assert case["title"] in text and "probe" in text and "total" in text and "nan" not in text.lower()
+    assert "on more ranks" in text and "particles spread evenly" in text
 
 
 def test_after_a_run_a_stage_far_from_its_estimate_is_named(case, estimate, tmp_path, caplog):
@@ -68,4 +70,20 @@ def test_after_a_run_a_stage_far_from_its_estimate_is_named(case, estimate, tmp_
 
 def test_of_an_archived_bed_only_the_chains_are_estimated(estimate):
     table, text = estimate(archived=True)
-    assert table.index[0] == "assign_cells" and "reference=simulate" in text
+    assert table.index[0] == "assign_cells" and "reference=simulate" in text and "more ranks" not in text
+
+
+def test_more_ranks_wait_for_the_fullest_slab_of_the_bed_that_is_there(case, estimate, tmp_path):
+    _, even = estimate()
+    bed, number, times = tmp_path / "results" / "short", case["particles"]["number"], [0.0, 2.0, 2.5]
+    np.save(bed / "trajectory.npy", np.full((len(times), len(STORED), number), 0.01, np.float32))
+    manifest = {"frames": [{"time_s": time, "step": int(1e4 * time)} for time in times]}
+    described = trajectory_metadata(manifest | {"frame_interval_s": 0.5}, np.arange(number), 0.1, 0.4)
+    (bed / "trajectory.json").write_text(json.dumps(described))
+    _, crowded = estimate()
+    assert "as they are from the learning window on" in crowded
+    two, full = (
+        next(line.split() for line in text.splitlines() if line.startswith("2 ")) for text in (even, crowded)
+    )
+    assert float(two[1]) == 1 and float(full[1]) == 2
+    assert float(two[4]) > 1.8 and float(full[4]) < 1.2
