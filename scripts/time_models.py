@@ -26,8 +26,8 @@ from bedchain.trajectory.grid import Grid
 from bedchain.trajectory.realisations import open_bed
 from bedchain.trajectory.store import BedFiles, read_manifest
 
-# a median of many runs where they are short, of three at least, so that one that compiles moves it not; of two
-# where both take half a second
+# a median of many runs where they are short, of three at least, so that one that compiles does not move it;
+# of two where both take half a second
 REPEATS, FEWEST = 15, 3
 ENOUGH_S, LONG_S = 0.2, 0.5
 

@@ -131,3 +131,10 @@ def test_timescales_are_given_of_models_with_a_matrix(bed, chains, tmp_path):
     assert set(distance.index) == set(names) and distance.between(0, 0.3).all()
     shares = table.query("quantity == 'first_passage_share'")
     assert len(shares) == 1 + len(names) and (shares["value"].between(0, 1)).all()
+
+
+def test_short_runs_are_timed_often_and_long_ones_twice():
+    assert not time_models.are_enough([0.1, 0.1]) and time_models.are_enough([0.1] * 3)
+    assert not time_models.are_enough([0.01] * 14) and time_models.are_enough([0.01] * 15)
+    assert not time_models.are_enough([0.6]) and time_models.are_enough([0.6, 0.7])
+    assert not time_models.are_enough([0.9, 0.4])  # the first has compiled
