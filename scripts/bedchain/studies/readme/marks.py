@@ -56,6 +56,8 @@ def _block(file: str, root: Path) -> str:
     if not path.exists():
         raise UserError(f"there is no {file}, which a mark names")
     table = pd.read_csv(path, dtype=str, keep_default_na=False)
+    if not isinstance(table.index, pd.RangeIndex):  # pandas takes the first field of longer rows for a name
+        raise UserError(f"{file} has rows longer than its first line: put what has a comma into quotes")
     return f"{OPENING} {file} -->\n{markdown(table)}\n{CLOSING}"
 
 

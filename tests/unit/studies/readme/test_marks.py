@@ -62,3 +62,9 @@ def test_a_mark_alone_is_refused(tmp_path: Path, text: str) -> None:
 def test_a_file_that_is_missing_is_named(tmp_path: Path) -> None:
     with pytest.raises(UserError, match="there is no t/b.csv"):
         filled("<!-- table: t/b.csv -->\n<!-- end -->", tmp_path)
+
+
+def test_a_row_longer_than_its_header_is_refused(tmp_path: Path) -> None:
+    (tmp_path / "costs.csv").write_text("bed,cost,source\nshort,1,a run, and another\n")
+    with pytest.raises(UserError, match=r"costs\.csv has rows longer .* quotes"):
+        filled("<!-- table: costs.csv -->\n<!-- end -->", tmp_path)
