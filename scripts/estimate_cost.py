@@ -103,8 +103,8 @@ def on_more_ranks(case: Case, speed: Speed, results: Path) -> list[str]:
     x_m = None
     if files.trajectory.exists() and files.metadata.exists():
         store, described = files.open()
-        later = np.flatnonzero(np.array(described["times_s"]) >= case["learning"]["start_s"])
-        x_m = store[later[:: max(1, later.size // FRAMES)], 0] if later.size else None
+        later = store[np.searchsorted(described["times_s"], case["learning"]["start_s"]) :, 0]
+        x_m = later[:: max(1, len(later) // FRAMES)] if len(later) else None
     table = more_ranks(case, speed, x_m)
     about = "spread evenly" if x_m is None else "as they are from the learning window on"
     return [

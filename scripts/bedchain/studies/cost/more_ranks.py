@@ -47,8 +47,10 @@ def fullest_slab(x_m: NDArray[np.floating], width_m: float, ranks: int) -> float
     ranks : int
         Slabs.
     """
-    slabs = np.clip((x_m / width_m * ranks).astype(np.int64), 0, ranks - 1)
-    fullest = [np.bincount(frame, minlength=ranks).max() for frame in slabs]
+    fullest = []
+    for frame in x_m:  # one after the other, since a large bed's frames fill the memory
+        slab = np.clip((frame / width_m * ranks).astype(np.int64), 0, ranks - 1)
+        fullest.append(np.bincount(slab).max())
     return float(np.mean(fullest) * ranks / x_m.shape[1])
 
 
