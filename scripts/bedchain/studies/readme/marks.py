@@ -36,7 +36,7 @@ def filled(text: str, root: Path) -> str:
     Raises
     ------
     UserError
-        A mark is not closed, or there is no such file.
+        A mark is not closed, there is no such file, or a row of it is longer than its first line.
     """
     if not text.count(OPENING) == text.count(CLOSING) == len(named_files(text)):
         raise UserError(f"a table lacks one of its marks, {OPENING} FILE --> and {CLOSING}")
